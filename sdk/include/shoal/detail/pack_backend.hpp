@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The part of Pack that differs between instruction sets: one section for each. Included by pack.hpp only.
+//
+// Typedefs with vector_size must not depend on a template parameter: gcc 12 then confuses the vector with its
+// element in overloads. Under AVX-512 the zero-masked intrinsics with a full mask are used because gcc 12 warns of
+// uninitialised variables inside the unmasked ones; the code they give is the same.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#if defined(__AVX__)
+#include <immintrin.h>
+#endif
+
+namespace shoal {
+inline namespace SHOAL_ISA_NAMESPACE {
+namespace detail {
+
+#if defined(__AVX512F__)
+
+inline constexpr int lanes = 8;
+using Raw = __m512d;
+using RawMask = __mmask8;
+using RawIndex = __m256i;
+inline constexpr __mmask8 full_mask = 0xFF;
+
+inline Raw broadcast(double x) { return _mm512_set1_pd(x); }
+inline Raw load(const double* p) { return _mm512_loadu_pd(p); }
+inline void store(double* p, Raw a) { _mm512_storeu_pd(p, a); }
+inline double get_lane(Raw a, int k) { return a[k]; }
+inline void set_lane(Raw& a, int k, double x) { a[k] = x; }
+inline RawMask less(Raw a, Raw b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
+inline RawMask less_equal(Raw a, Raw b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
+inline RawMask equal(Raw a, Raw b) { return _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ); }
+inline Raw select(RawMask m, Raw a, Raw b) { return _mm512_mask_blend_pd(m, b, a); }
+inline Raw min(Raw a, Raw b) { return _mm512_maskz_min_pd(full_mask, a, b); }
+inline Raw max(Raw a, Raw b) { return _mm512_maskz_max_pd(full_mask, a, b); }
+inline Raw sqrt(Raw a) { return _mm512_maskz_sqrt_pd(full_mask, a); }
+inline Raw abs(Raw a) {
+  return _mm512_castsi512_pd(
+      _mm512_and_epi64(_mm512_castpd_si512(a), _mm512_set1_epi64(0x7FFFFFFFFFFFFFFFLL)));
+}
+inline RawMask mask_all(bool b) { return b ? full_mask : RawMask{0}; }
+inline RawMask mask_and(RawMask a, RawMask b) { return static_cast<RawMask>(a & b); }
+inline RawMask mask_or(RawMask a, RawMask b) { return static_cast<RawMask>(a | b); }
+inline RawMask mask_not(RawMask a) { return static_cast<RawMask>(a ^ full_mask); }
+inline bool mask_any(RawMask a) { return a != 0; }
+inline bool mask_lane(RawMask a, int k) { return ((a >> k) & 1) != 0; }
+inline RawMask first_lanes(std::int64_t n) {
+  if (n <= 0) return 0;
+  return n >= lanes ? full_mask : static_cast<RawMask>((1u << n) - 1u);
+}
+
+inline RawIndex load_index(const std::uint32_t* p) {
+  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
+}
+inline std::uint32_t get_index(RawIndex a, int k) {
+  alignas(32) std::uint32_t x[lanes];
+  _mm256_store_si256(reinterpret_cast<__m256i*>(x), a);
+  return x[k];
+}
+template <int Stride>
+inline Raw gather(const double* base, RawIndex index) {
+  const __m256i scaled =
+      Stride == 1 ? index : _mm256_mullo_epi32(index, _mm256_set1_epi32(Stride));
+  return _mm512_mask_i32gather_pd(_mm512_setzero_pd(), full_mask, scaled, base, 8);
+}
+
+#elif defined(__AVX__)
+
+inline constexpr int lanes = 4;
+using Raw = __m256d;
+using RawMask = __m256d;  // all bits of a lane set or none
+using RawIndex = __m128i;
+
+inline Raw broadcast(double x) { return _mm256_set1_pd(x); }
+inline Raw load(const double* p) { return _mm256_loadu_pd(p); }
+inline void store(double* p, Raw a) { _mm256_storeu_pd(p, a); }
+inline double get_lane(Raw a, int k) { return a[k]; }
+inline void set_lane(Raw& a, int k, double x) { a[k] = x; }
+inline RawMask less(Raw a, Raw b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
+inline RawMask less_equal(Raw a, Raw b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
+inline RawMask equal(Raw a, Raw b) { return _mm256_cmp_pd(a, b, _CMP_EQ_OQ); }
+inline Raw select(RawMask m, Raw a, Raw b) { return _mm256_blendv_pd(b, a, m); }
+inline Raw min(Raw a, Raw b) { return _mm256_min_pd(a, b); }
+inline Raw max(Raw a, Raw b) { return _mm256_max_pd(a, b); }
+inline Raw sqrt(Raw a) { return _mm256_sqrt_pd(a); }
+inline Raw abs(Raw a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
+inline RawMask mask_all(bool b) { return _mm256_castsi256_pd(_mm256_set1_epi64x(b ? -1 : 0)); }
+inline RawMask mask_and(RawMask a, RawMask b) { return _mm256_and_pd(a, b); }
+inline RawMask mask_or(RawMask a, RawMask b) { return _mm256_or_pd(a, b); }
+inline RawMask mask_not(RawMask a) { return _mm256_xor_pd(a, mask_all(true)); }
+inline bool mask_any(RawMask a) { return _mm256_movemask_pd(a) != 0; }
+inline bool mask_lane(RawMask a, int k) { return ((_mm256_movemask_pd(a) >> k) & 1) != 0; }
+inline RawMask first_lanes(std::int64_t n) {
+  return less(_mm256_setr_pd(0, 1, 2, 3), broadcast(static_cast<double>(n)));
+}
+
+inline RawIndex load_index(const std::uint32_t* p) {
+  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(p));
+}
+inline std::uint32_t get_index(RawIndex a, int k) {
+  alignas(16) std::uint32_t x[lanes];
+  _mm_store_si128(reinterpret_cast<__m128i*>(x), a);
+  return x[k];
+}
+template <int Stride>
+inline Raw gather(const double* base, RawIndex index) {
+#if defined(__AVX2__)
+  const __m128i scaled = Stride == 1 ? index : _mm_mullo_epi32(index, _mm_set1_epi32(Stride));
+  return _mm256_mask_i32gather_pd(_mm256_setzero_pd(), base, scaled, mask_all(true), 8);
+#else
+  alignas(16) std::uint32_t x[lanes];
+  _mm_store_si128(reinterpret_cast<__m128i*>(x), index);
+  return _mm256_setr_pd(base[std::size_t{x[0]} * Stride], base[std::size_t{x[1]} * Stride],
+                        base[std::size_t{x[2]} * Stride], base[std::size_t{x[3]} * Stride]);
+#endif
+}
+
+#else  // two vectors of 16 bytes: SSE2, NEON and their like; wider vectors would change the calling convention
+
+inline constexpr int lanes = 4;
+typedef double Double2 __attribute__((vector_size(16)));
+typedef std::int64_t Long2 __attribute__((vector_size(16)));
+
+struct Raw {
+  Double2 half[2];
+
+  friend Raw operator-(Raw a) { return {{-a.half[0], -a.half[1]}}; }
+  friend Raw operator+(Raw a, Raw b) { return {{a.half[0] + b.half[0], a.half[1] + b.half[1]}}; }
+  friend Raw operator-(Raw a, Raw b) { return {{a.half[0] - b.half[0], a.half[1] - b.half[1]}}; }
+  friend Raw operator*(Raw a, Raw b) { return {{a.half[0] * b.half[0], a.half[1] * b.half[1]}}; }
+  friend Raw operator/(Raw a, Raw b) { return {{a.half[0] / b.half[0], a.half[1] / b.half[1]}}; }
+};
+struct RawMask {
+  Long2 half[2];
+};
+struct RawIndex {
+  std::uint32_t lane[lanes];
+};
+
+inline Double2 bits_to_double(Long2 a) { return reinterpret_cast<Double2>(a); }
+inline Long2 bits_to_long(Double2 a) { return reinterpret_cast<Long2>(a); }
+inline Double2 select_half(Long2 m, Double2 a, Double2 b) {
+  return bits_to_double((m & bits_to_long(a)) | (~m & bits_to_long(b)));
+}
+
+inline Raw broadcast(double x) { return {{Double2{x, x}, Double2{x, x}}}; }
+inline Raw load(const double* p) { return {{Double2{p[0], p[1]}, Double2{p[2], p[3]}}}; }
+inline void store(double* p, Raw a) { std::memcpy(p, a.half, sizeof a.half); }
+inline double get_lane(Raw a, int k) { return a.half[k / 2][k % 2]; }
+inline void set_lane(Raw& a, int k, double x) { a.half[k / 2][k % 2] = x; }
+inline RawMask less(Raw a, Raw b) {
+  return {{Long2(a.half[0] < b.half[0]), Long2(a.half[1] < b.half[1])}};
+}
+inline RawMask less_equal(Raw a, Raw b) {
+  return {{Long2(a.half[0] <= b.half[0]), Long2(a.half[1] <= b.half[1])}};
+}
+inline RawMask equal(Raw a, Raw b) {
+  return {{Long2(a.half[0] == b.half[0]), Long2(a.half[1] == b.half[1])}};
+}
+inline Raw select(RawMask m, Raw a, Raw b) {
+  return {{select_half(m.half[0], a.half[0], b.half[0]), select_half(m.half[1], a.half[1], b.half[1])}};
+}
+inline Raw min(Raw a, Raw b) { return select(less(a, b), a, b); }
+inline Raw max(Raw a, Raw b) { return select(less(b, a), a, b); }
+inline Raw sqrt(Raw a) {
+  for (int k = 0; k < lanes; ++k) set_lane(a, k, std::sqrt(get_lane(a, k)));
+  return a;
+}
+inline Raw abs(Raw a) {
+  const Long2 magnitude = {0x7FFFFFFFFFFFFFFFLL, 0x7FFFFFFFFFFFFFFFLL};
+  return {{bits_to_double(bits_to_long(a.half[0]) & magnitude),
+           bits_to_double(bits_to_long(a.half[1]) & magnitude)}};
+}
+inline RawMask mask_all(bool b) {
+  const std::int64_t x = b ? -1 : 0;
+  return {{Long2{x, x}, Long2{x, x}}};
+}
+inline RawMask mask_and(RawMask a, RawMask b) { return {{a.half[0] & b.half[0], a.half[1] & b.half[1]}}; }
+inline RawMask mask_or(RawMask a, RawMask b) { return {{a.half[0] | b.half[0], a.half[1] | b.half[1]}}; }
+inline RawMask mask_not(RawMask a) { return {{~a.half[0], ~a.half[1]}}; }
+inline bool mask_lane(RawMask a, int k) { return a.half[k / 2][k % 2] != 0; }
+inline bool mask_any(RawMask a) {
+  const Long2 both = a.half[0] | a.half[1];
+  return (both[0] | both[1]) != 0;
+}
+inline RawMask first_lanes(std::int64_t n) {
+  const Long2 limit = {n, n};
+  return {{Long2(Long2{0, 1} < limit), Long2(Long2{2, 3} < limit)}};
+}
+
+inline RawIndex load_index(const std::uint32_t* p) { return {{p[0], p[1], p[2], p[3]}}; }
+inline std::uint32_t get_index(RawIndex a, int k) { return a.lane[k]; }
+template <int Stride>
+inline Raw gather(const double* base, RawIndex index) {
+  const auto at = [&](int k) { return base[std::size_t{index.lane[k]} * Stride]; };
+  return {{Double2{at(0), at(1)}, Double2{at(2), at(3)}}};
+}
+
+#endif
+
+}  // namespace detail
+}  // namespace SHOAL_ISA_NAMESPACE
+}  // namespace shoal
