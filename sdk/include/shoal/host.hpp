@@ -24,7 +24,7 @@ struct PhysicsFailed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-namespace detail {
+namespace impl {
 
 inline const shoal_host* host_table = nullptr;
 
@@ -35,12 +35,12 @@ struct HostFailed : std::exception {
   shoal_status status;
 };
 
-}  // namespace detail
+}  // namespace impl
 
-inline const shoal_host& host() { return *detail::host_table; }
+inline const shoal_host& host() { return *impl::host_table; }
 
 inline void check_host(shoal_status status) {
-  if (status != SHOAL_OK) throw detail::HostFailed(status);
+  if (status != SHOAL_OK) throw impl::HostFailed(status);
 }
 
 inline void log_debug(const std::string& text) { host().log(SHOAL_LOG_DEBUG, text.c_str()); }
@@ -53,7 +53,7 @@ shoal_status guarded(Callback&& callback) noexcept {
   try {
     std::forward<Callback>(callback)();
     return SHOAL_OK;
-  } catch (const detail::HostFailed& failed) {
+  } catch (const impl::HostFailed& failed) {
     return failed.status;
   } catch (const CaseError& error) {
     host().fail(error.what());

@@ -121,7 +121,7 @@ struct ObjectsOf {
 
 class Parameterised;
 
-namespace detail {
+namespace impl {
 
 class ParameterBase {
  public:
@@ -173,7 +173,7 @@ class ParameterBase {
 
 inline thread_local Parameterised* enrolling = nullptr;
 
-}  // namespace detail
+}  // namespace impl
 
 // Base of everything with parameters. Its address must not change: members are enrolled by it.
 class Parameterised {
@@ -200,15 +200,15 @@ class Parameterised {
   }
 
  protected:
-  Parameterised() { detail::enrolling = this; }
+  Parameterised() { impl::enrolling = this; }
   ~Parameterised() = default;
 
  private:
-  friend class detail::ParameterBase;
-  std::vector<detail::ParameterBase*> parameters_;
+  friend class impl::ParameterBase;
+  std::vector<impl::ParameterBase*> parameters_;
 };
 
-namespace detail {
+namespace impl {
 
 inline void ParameterBase::enrol(const char* key, const char* unit, const char* doc, std::uint32_t kind,
                                  std::uint32_t flags) {
@@ -254,7 +254,8 @@ struct ValueTraits<Vector3> {
   static constexpr std::uint32_t kind = SHOAL_VECTOR;
   static Vector3 get(const shoal_value& v, std::uint32_t k, int dimensions) {
     Vector3 out{};
-    for (int d = 0; d < dimensions; ++d) out[d] = v.reals[k * dimensions + d];
+    const auto n = static_cast<std::size_t>(dimensions);
+    for (std::size_t d = 0; d < n; ++d) out[d] = v.reals[k * n + d];
     return out;
   }
 };
@@ -268,7 +269,8 @@ struct ValueTraits<VectorExpression> {
   static constexpr std::uint32_t kind = SHOAL_VECTOR_EXPRESSION;
   static VectorExpression get(const shoal_value& v, std::uint32_t k, int dimensions) {
     VectorExpression out;
-    for (int d = 0; d < dimensions; ++d) out.component[d] = Expression(v.expressions[k * dimensions + d]);
+    const auto n = static_cast<std::size_t>(dimensions);
+    for (std::size_t d = 0; d < n; ++d) out.component[d] = Expression(v.expressions[k * n + d]);
     return out;
   }
 };
@@ -290,19 +292,19 @@ inline constexpr bool is_list = false;
 template <class T>
 inline constexpr bool is_list<std::vector<T>> = true;
 
-}  // namespace detail
+}  // namespace impl
 
 // A parameter of type double, std::int64_t, bool, std::string, Choice, Vector3, Expression, VectorExpression,
 // BodyIndex or ObjectHandle, or a std::vector of these. `unit` is UDUNITS-2 text, nullptr where it makes no sense.
 template <class T>
-class Param final : public detail::ParameterBase {
+class Param final : public impl::ParameterBase {
  public:
   template <class... Options>
   Param(const char* key, const char* unit, const char* doc, Options... options) {
-    if constexpr (detail::is_list<T>)
-      enrol(key, unit, doc, detail::ValueTraits<typename T::value_type>::kind, SHOAL_PARAMETER_LIST);
+    if constexpr (impl::is_list<T>)
+      enrol(key, unit, doc, impl::ValueTraits<typename T::value_type>::kind, SHOAL_PARAMETER_LIST);
     else
-      enrol(key, unit, doc, detail::ValueTraits<T>::kind, 0);
+      enrol(key, unit, doc, impl::ValueTraits<T>::kind, 0);
     (apply(std::move(options)), ...);
   }
 
@@ -318,12 +320,12 @@ class Param final : public detail::ParameterBase {
 
  private:
   void set(const shoal_value& value, int dimensions) override {
-    if constexpr (detail::is_list<T>) {
+    if constexpr (impl::is_list<T>) {
       value_.clear();
       for (std::uint32_t k = 0; k < value.n; ++k)
-        value_.push_back(detail::ValueTraits<typename T::value_type>::get(value, k, dimensions));
+        value_.push_back(impl::ValueTraits<typename T::value_type>::get(value, k, dimensions));
     } else {
-      value_ = detail::ValueTraits<T>::get(value, 0, dimensions);
+      value_ = impl::ValueTraits<T>::get(value, 0, dimensions);
     }
   }
 

@@ -1,0 +1,427 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What pair and particle operators have in common: the fields that they name as members, where they stand in a run,
+// reductions, and the table of C callbacks that the kernel calls.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "shoal/abi.h"
+#include "shoal/host.hpp"
+#include "shoal/parameters.hpp"
+#include "shoal/shared_fields.hpp"
+#include "shoal/smoothing_kernel.hpp"
+#include "shoal/vec.hpp"
+
+namespace shoal {
+
+// What a field holds per particle: In<Scalar>, In<Vector>, ... The number of components follows from the case.
+struct Scalar {};
+struct Vector {};
+struct Matrix {};
+struct Integer {};
+
+// A particle of a run in D dimensions; indexes fields: `velocity[i]`.
+template <int D>
+struct Particle {
+  static constexpr int dimensions = D;
+  std::uint64_t index;
+  double* partial;  // this chunk's part of the reductions
+};
+
+namespace impl {
+
+template <class T, int D>
+struct Element;
+template <int D>
+struct Element<shoal::Scalar, D> {
+  using type = double;
+};
+template <int D>
+struct Element<shoal::Vector, D> {
+  using type = Vec<D>;
+};
+template <int D>
+struct Element<shoal::Matrix, D> {
+  using type = Mat<D>;
+};
+template <int D>
+struct Element<shoal::Integer, D> {
+  using type = std::int64_t;
+};
+
+template <class T>
+inline constexpr shoal_rank rank_of = SHOAL_SCALAR;
+template <>
+inline constexpr shoal_rank rank_of<shoal::Vector> = SHOAL_RANK_VECTOR;
+template <>
+inline constexpr shoal_rank rank_of<shoal::Matrix> = SHOAL_RANK_MATRIX;
+
+inline constexpr std::size_t max_neighbour_bodies = 16;
+
+}  // namespace impl
+
+// Options of a field member.
+struct FieldOption {
+  std::uint32_t set = 0, clear = 0;
+};
+// Not read of the neighbours (In of a pair operator is read of both otherwise).
+inline constexpr FieldOption own_only{0, SHOAL_OF_NEIGHBOURS};
+// Read of the neighbours only, e.g. the normal of a wall.
+inline constexpr FieldOption neighbours_only{SHOAL_OF_NEIGHBOURS | SHOAL_NOT_OWN, 0};
+// Written anew in each step before it is read, so it need not be in a checkpoint.
+inline constexpr FieldOption derived{SHOAL_DERIVED, 0};
+
+struct Unit {
+  const char* text;
+};
+struct Doc {
+  const char* text;
+};
+// For fields that are not shared: In<Scalar> swelling{"swelling", unit("1"), doc("Relative volume.")}.
+constexpr Unit unit(const char* text) { return {text}; }
+constexpr Doc doc(const char* text) { return {text}; }
+
+class OperatorBase;
+
+namespace impl {
+
+// A field as a member of an operator.
+class FieldMember {
+ public:
+  FieldMember(const FieldMember&) = delete;
+  FieldMember& operator=(const FieldMember&) = delete;
+  const char* name() const { return access_.field; }
+  // Names another field of the same rank; before the operator is attached.
+  void rename(const char* field) { access_.field = field; }
+
+ protected:
+  inline FieldMember(const char* field, std::uint32_t mode, shoal_rank rank, shoal_data_type type);
+  void apply(FieldOption option) { access_.mode = (access_.mode | option.set) & ~option.clear; }
+  void apply(Unit text) { access_.unit = text.text; }
+  void apply(Doc text) { access_.doc = text.text; }
+
+  void* own_ = nullptr;
+  std::array<const void*, max_neighbour_bodies> of_neighbours_{};
+
+ private:
+  friend class shoal::OperatorBase;
+  shoal_access access_{};
+};
+
+}  // namespace impl
+
+template <class T, bool Writable>
+class Field : public impl::FieldMember {
+ public:
+  using value_tag = T;
+  template <int D>
+  using Element = typename impl::Element<T, D>::type;
+
+  // The particle's own value.
+  template <int D>
+  decltype(auto) operator[](Particle<D> i) const {
+    if constexpr (Writable)
+      return static_cast<Element<D>*>(own_)[i.index];
+    else
+      return static_cast<const Element<D>*>(own_)[i.index];
+  }
+  // All owned values, components interleaved, for block-wise code.
+  auto data() const {
+    using Number = std::conditional_t<std::is_same_v<T, Integer>, std::int64_t, double>;
+    if constexpr (Writable)
+      return static_cast<Number*>(own_);
+    else
+      return static_cast<const Number*>(own_);
+  }
+  // The neighbours' values, for pair loops.
+  const double* of_neighbours(std::size_t relation) const {
+    return static_cast<const double*>(of_neighbours_[relation]);
+  }
+
+ protected:
+  Field(const char* field, std::uint32_t mode)
+      : FieldMember(field, mode, impl::rank_of<T>,
+                    std::is_same_v<T, Integer> ? SHOAL_INT64 : SHOAL_DOUBLE) {}
+};
+
+// Reads a field; in pair operators of the particle and of its neighbours.
+template <class T>
+class In final : public Field<T, false> {
+ public:
+  template <class... Options>
+  explicit In(const char* field, Options... options) : Field<T, false>(field, SHOAL_READ) {
+    (this->apply(options), ...);
+  }
+};
+
+// Writes a field of the own particle, all of it.
+template <class T>
+class Out final : public Field<T, true> {
+ public:
+  template <class... Options>
+  explicit Out(const char* field, Options... options) : Field<T, true>(field, SHOAL_WRITE) {
+    (this->apply(options), ...);
+  }
+};
+
+// Reads and changes a field of the own particle.
+template <class T>
+class InOut final : public Field<T, true> {
+ public:
+  template <class... Options>
+  explicit InOut(const char* field, Options... options) : Field<T, true>(field, SHOAL_READ | SHOAL_WRITE) {
+    (this->apply(options), ...);
+  }
+};
+
+// Adds to a field of the own particle, which its owner clears.
+template <class T>
+class Accumulate final : public Field<T, true> {
+ public:
+  template <class... Options>
+  explicit Accumulate(const char* field, Options... options) : Field<T, true>(field, SHOAL_ACCUMULATE) {
+    (this->apply(options), ...);
+  }
+};
+
+// A number over all particles of the body, e.g. Maximum speed{}; then speed.update(i, value) in `particle`, and
+// speed.result() from `end` on.
+template <shoal_reduction How>
+class Reduction {
+ public:
+  inline Reduction();
+  template <int D>
+  void update(Particle<D> i, double value) const {
+    double& partial = i.partial[index_];
+    if constexpr (How == SHOAL_SUM)
+      partial += value;
+    else if constexpr (How == SHOAL_MINIMUM)
+      partial = value < partial ? value : partial;
+    else
+      partial = value > partial ? value : partial;
+  }
+  double result() const { return result_; }
+
+ private:
+  friend class OperatorBase;
+  std::size_t index_ = 0;
+  double result_ = How == SHOAL_SUM       ? 0.0
+                   : How == SHOAL_MINIMUM ? std::numeric_limits<double>::infinity()
+                                          : -std::numeric_limits<double>::infinity();
+};
+using Sum = Reduction<SHOAL_SUM>;
+using Minimum = Reduction<SHOAL_MINIMUM>;
+using Maximum = Reduction<SHOAL_MAXIMUM>;
+
+// Where an operator works: set by the builder before it is attached.
+struct Target {
+  BodyIndex body;
+  std::vector<BodyIndex> neighbours;  // of pair operators
+  SmoothingKernel smoothing_kernel = SmoothingKernel::wendland_c2;
+  double smoothing_length = 0;        // m
+  double cutoff = 0;                  // m
+  double spacing = 0;                 // m
+  shoal_configuration configuration = SHOAL_CURRENT;
+};
+
+class OperatorBase : public Parameterised {
+ public:
+  virtual ~OperatorBase() = default;
+
+  const shoal_step& step() const { return step_; }
+  double dt() const { return step_.dt; }
+  double time() const { return step_.time; }
+  int dimensions() const { return dimensions_; }
+  double smoothing_length() const { return target_.smoothing_length; }
+  double spacing() const { return target_.spacing; }
+  std::uint64_t n_particles() const { return n_owned_; }
+  const Target& target() const { return target_; }
+  void set_target(Target target) { target_ = std::move(target); }
+  void set_dimensions(int dimensions) { dimensions_ = dimensions; }
+
+  void bind(const shoal_binding& binding) {
+    dimensions_ = binding.dimensions;
+    n_owned_ = binding.n_owned;
+    const std::size_t n = fields_.size();
+    for (std::size_t a = 0; a < n; ++a) {
+      fields_[a]->own_ = binding.own[a].data;
+      for (std::size_t k = 0; k < target_.neighbours.size(); ++k)
+        fields_[a]->of_neighbours_[k] = binding.of_neighbours[k * n + a].data;
+    }
+    neighbours_.assign(binding.neighbours, binding.neighbours + target_.neighbours.size());
+  }
+  void set_step(const shoal_step& step) { step_ = step; }
+  void set_results(const double* results) {
+    for (std::size_t k = 0; k < results_.size(); ++k) *results_[k] = results[k];
+  }
+  const shoal_neighbours& neighbours(std::size_t relation) const { return neighbours_[relation]; }
+  std::size_t n_relations() const { return target_.neighbours.size(); }
+
+  std::vector<shoal_access> accesses() const {
+    std::vector<shoal_access> list;
+    for (const auto* field : fields_) list.push_back(field->access_);
+    return list;
+  }
+  const std::vector<std::uint32_t>& reductions() const { return reductions_; }
+
+ protected:
+  explicit OperatorBase(bool pairs) : pairs_(pairs) { enrolling_ = this; }
+
+ private:
+  friend class impl::FieldMember;
+  template <shoal_reduction>
+  friend class Reduction;
+
+  inline static thread_local OperatorBase* enrolling_ = nullptr;
+
+  bool pairs_;
+  int dimensions_ = 0;
+  std::uint64_t n_owned_ = 0;
+  Target target_;
+  shoal_step step_{};
+  std::vector<impl::FieldMember*> fields_;
+  std::vector<shoal_neighbours> neighbours_;
+  std::vector<std::uint32_t> reductions_;
+  std::vector<double*> results_;
+};
+
+namespace impl {
+
+inline FieldMember::FieldMember(const char* field, std::uint32_t mode, shoal_rank rank, shoal_data_type type) {
+  OperatorBase& owner = *OperatorBase::enrolling_;
+  access_.size = sizeof(shoal_access);
+  access_.mode = mode;
+  if (owner.pairs_ && mode == SHOAL_READ) access_.mode |= SHOAL_OF_NEIGHBOURS;
+  access_.rank = rank;
+  access_.data_type = type;
+  access_.field = field;
+  owner.fields_.push_back(this);
+}
+
+}  // namespace impl
+
+template <shoal_reduction How>
+Reduction<How>::Reduction() {
+  OperatorBase& owner = *OperatorBase::enrolling_;
+  index_ = owner.reductions_.size();
+  owner.reductions_.push_back(How);
+  owner.results_.push_back(&result_);
+}
+
+namespace impl {
+
+// An operator with the arrays that its C description borrows; what `self` points to.
+template <class Op>
+struct AttachedOperator {
+  Op op;
+  std::string name;
+  std::vector<shoal_access> accesses;
+  std::vector<shoal_relation_request> relations;
+};
+
+template <class Op>
+Op& op_of(void* self) {
+  return static_cast<AttachedOperator<Op>*>(self)->op;
+}
+
+template <class Op, int D>
+concept HasParticleTimeStep = requires(const Op& op, Particle<D> i) {
+  { op.time_step_of(i) } -> std::convertible_to<double>;
+};
+template <class Op>
+concept HasTimeStep = requires(const Op& op, double h) {
+  { op.time_step(h) } -> std::convertible_to<double>;
+};
+template <class Op>
+concept HasState = requires(Op& op, const shoal_stream& stream) {
+  op.save(stream);
+  op.load(stream);
+};
+
+template <class Op>
+double time_step_of_chunk(void* self, const shoal_step* step, const shoal_chunk* chunk) noexcept {
+  const Op& op = op_of<Op>(self);
+  double limit = std::numeric_limits<double>::infinity();
+  if constexpr (HasParticleTimeStep<Op, 2>) {
+    const auto over_particles = [&]<int D>() {
+      for (std::uint64_t i = chunk->begin; i < chunk->end; ++i) {
+        const double particle_limit = op.time_step_of(Particle<D>{i, nullptr});
+        // A NaN must not be lost in a minimum: it stops the run.
+        if (!(particle_limit >= limit)) limit = particle_limit;
+      }
+    };
+    step->dimensions == 2 ? over_particles.template operator()<2>() : over_particles.template operator()<3>();
+  } else if constexpr (HasTimeStep<Op>) {
+    limit = op.time_step(op.smoothing_length());
+  }
+  return limit;
+}
+
+// The C description of an operator; the kernel calls `destroy` when it no longer needs it.
+template <class Op>
+shoal_operator describe(std::unique_ptr<AttachedOperator<Op>> attached, std::uint32_t flags) {
+  const Target& target = attached->op.target();
+  if (target.neighbours.size() > max_neighbour_bodies)
+    throw CaseError(attached->name + ": more than " + std::to_string(max_neighbour_bodies) + " neighbour bodies");
+  attached->accesses = attached->op.accesses();
+  for (const BodyIndex neighbour : target.neighbours)
+    attached->relations.push_back({sizeof(shoal_relation_request), neighbour.value,
+                                   static_cast<std::uint32_t>(target.configuration), 0, target.cutoff});
+  shoal_operator c{};
+  c.size = sizeof(shoal_operator);
+  c.flags = flags;
+  c.name = attached->name.c_str();
+  c.body = target.body.value;
+  c.n_accesses = static_cast<std::uint32_t>(attached->accesses.size());
+  c.accesses = attached->accesses.data();
+  c.n_relations = static_cast<std::uint32_t>(attached->relations.size());
+  c.relations = attached->relations.data();
+  c.n_reductions = static_cast<std::uint32_t>(attached->op.reductions().size());
+  c.reductions = attached->op.reductions().data();
+  c.destroy = [](void* self) { delete static_cast<AttachedOperator<Op>*>(self); };
+  c.bind = [](void* self, const shoal_binding* binding) {
+    return guarded([&] {
+      op_of<Op>(self).bind(*binding);
+      if constexpr (requires(Op& op) { op.bound(); }) op_of<Op>(self).bound();
+    });
+  };
+  c.begin = [](void* self, const shoal_step* step) {
+    return guarded([&] {
+      op_of<Op>(self).set_step(*step);
+      if constexpr (requires(Op& op) { op.begin(); }) op_of<Op>(self).begin();
+    });
+  };
+  c.run = [](void* self, const shoal_step* step, const shoal_chunk* chunk) {
+    return guarded([&] {
+      const Op& op = op_of<Op>(self);
+      step->dimensions == 2 ? op.template run_chunk<2>(*chunk) : op.template run_chunk<3>(*chunk);
+    });
+  };
+  c.end = [](void* self, const shoal_step*, const double* results) {
+    return guarded([&] {
+      op_of<Op>(self).set_results(results);
+      if constexpr (requires(Op& op) { op.end(); }) op_of<Op>(self).end();
+    });
+  };
+  if constexpr (HasParticleTimeStep<Op, 2> || HasTimeStep<Op>) {
+    c.time_step = &time_step_of_chunk<Op>;
+    if constexpr (HasParticleTimeStep<Op, 2>) c.flags |= SHOAL_OPERATOR_TIME_STEP_OF_PARTICLES;
+  }
+  if constexpr (HasState<Op>) {
+    c.save = [](void* self, const shoal_stream* stream) { return guarded([&] { op_of<Op>(self).save(*stream); }); };
+    c.load = [](void* self, const shoal_stream* stream) { return guarded([&] { op_of<Op>(self).load(*stream); }); };
+  }
+  c.self = attached.release();
+  return c;
+}
+
+}  // namespace impl
+}  // namespace shoal
