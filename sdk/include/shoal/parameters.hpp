@@ -62,6 +62,11 @@ struct Choice {
   bool operator==(std::string_view other) const { return word == other; }
 };
 
+// The name of a field, e.g. velocity, or of a component of one, e.g. velocity.x.
+struct FieldName {
+  std::string name;
+};
+
 // A nested object of a registered type: `{type.name: {key: value}}`.
 struct ObjectHandle {
   const shoal_object* object = nullptr;
@@ -282,6 +287,11 @@ struct ValueTraits<BodyIndex> {
   }
 };
 template <>
+struct ValueTraits<FieldName> {
+  static constexpr std::uint32_t kind = SHOAL_FIELD;
+  static FieldName get(const shoal_value& v, std::uint32_t k, int) { return {v.texts[k]}; }
+};
+template <>
 struct ValueTraits<ObjectHandle> {
   static constexpr std::uint32_t kind = SHOAL_OBJECT;
   static ObjectHandle get(const shoal_value& v, std::uint32_t k, int) { return {v.objects[k]}; }
@@ -295,7 +305,7 @@ inline constexpr bool is_list<std::vector<T>> = true;
 }  // namespace impl
 
 // A parameter of type double, std::int64_t, bool, std::string, Choice, Vector3, Expression, VectorExpression,
-// BodyIndex or ObjectHandle, or a std::vector of these. `unit` is UDUNITS-2 text, nullptr where it makes no sense.
+// BodyIndex, FieldName or ObjectHandle, or a std::vector of these. `unit` is UDUNITS-2 text, nullptr where it makes no sense.
 template <class T>
 class Param final : public impl::ParameterBase {
  public:

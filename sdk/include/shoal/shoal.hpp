@@ -8,6 +8,7 @@
 #include "shoal/host.hpp"
 #include "shoal/material.hpp"
 #include "shoal/operator.hpp"
+#include "shoal/output.hpp"
 #include "shoal/pack.hpp"
 #include "shoal/pair_operator.hpp"
 #include "shoal/parameters.hpp"
