@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Collects and formats what is wrong with a case.
-#include "diagnostics.hpp"
+#include "kernel/case/diagnostics.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -221,8 +221,9 @@ std::string closest(std::string_view word, const std::vector<std::string>& candi
     const std::size_t dot = lowered.rfind('.');
     std::size_t distance = edit_distance(wanted, lowered);
     if (dot != std::string::npos && lowered.substr(dot + 1) == wanted) distance = 0;
-    // A word of one letter has nothing in common with another of one letter.
-    if (distance > 0 && (wanted.size() < 2 || distance >= lowered.size())) continue;
+    // Two edits of four letters, or one of a single letter, leave nothing in common: "foo" is not "n".
+    if (2 * distance > wanted.size() || distance >= lowered.size()) continue;
+    if (distance == 2 && wanted.size() < 5) continue;
     if (distance < best_distance) {
       best = candidate;
       best_distance = distance;

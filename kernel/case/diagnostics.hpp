@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "place.hpp"
+#include "kernel/case/place.hpp"
 
 namespace shoal::kernel {
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The tree that yaml_reader builds, apart from the building.
-#include "scalars.hpp"
-#include "yaml_reader.hpp"
+#include "kernel/case/scalars.hpp"
+#include "kernel/case/yaml_reader.hpp"
 
 namespace shoal::kernel {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Strict reading of numbers and booleans.
-#include "scalars.hpp"
+#include "kernel/case/scalars.hpp"
 
 #include <algorithm>
 #include <array>

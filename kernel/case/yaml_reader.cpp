@@ -3,7 +3,7 @@
 //
 // Builds the tree from the events of yaml-cpp's parser rather than from its nodes: events carry the position of
 // every key, value and alias, and let equal keys and merge keys be seen.
-#include "yaml_reader.hpp"
+#include "kernel/case/yaml_reader.hpp"
 
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "diagnostics.hpp"
-#include "place.hpp"
+#include "kernel/case/diagnostics.hpp"
+#include "kernel/case/place.hpp"
 
 namespace shoal::kernel {
 
