@@ -36,46 +36,46 @@ namespace shoal {
 inline namespace SHOAL_ISA_NAMESPACE {
 
 /// Number of doubles in a Pack.
-inline constexpr int lanes = detail::lanes;
+inline constexpr int lanes = simd::lanes;
 
 /// One truth value per lane: the result of comparing packs.
 struct Mask {
-  detail::RawMask v;
+  simd::RawMask v;
 
   Mask() = default;
-  Mask(bool b) : v(detail::mask_all(b)) {}  // NOLINT: a bool is the same truth in every lane
-  static Mask from_raw(detail::RawMask raw) {
+  Mask(bool b) : v(simd::mask_all(b)) {}  // NOLINT: a bool is the same truth in every lane
+  static Mask from_raw(simd::RawMask raw) {
     Mask m;
     m.v = raw;
     return m;
   }
 
-  bool operator[](int lane) const { return detail::mask_lane(v, lane); }
+  bool operator[](int lane) const { return simd::mask_lane(v, lane); }
 
-  friend Mask operator&(Mask a, Mask b) { return from_raw(detail::mask_and(a.v, b.v)); }
-  friend Mask operator|(Mask a, Mask b) { return from_raw(detail::mask_or(a.v, b.v)); }
+  friend Mask operator&(Mask a, Mask b) { return from_raw(simd::mask_and(a.v, b.v)); }
+  friend Mask operator|(Mask a, Mask b) { return from_raw(simd::mask_or(a.v, b.v)); }
   friend Mask operator&&(Mask a, Mask b) { return a & b; }
   friend Mask operator||(Mask a, Mask b) { return a | b; }
-  friend Mask operator!(Mask a) { return from_raw(detail::mask_not(a.v)); }
+  friend Mask operator!(Mask a) { return from_raw(simd::mask_not(a.v)); }
 };
 
 /// `lanes` doubles. Arithmetic is strict IEEE arithmetic of each lane.
 struct Pack {
-  detail::Raw v;
+  simd::Raw v;
 
   Pack() = default;
-  Pack(double x) : v(detail::broadcast(x)) {}  // NOLINT: a number is the same number in every lane
-  static Pack from_raw(detail::Raw raw) {
+  Pack(double x) : v(simd::broadcast(x)) {}  // NOLINT: a number is the same number in every lane
+  static Pack from_raw(simd::Raw raw) {
     Pack p;
     p.v = raw;
     return p;
   }
   /// Reads `lanes` doubles; no alignment is needed.
-  static Pack load(const double* p) { return from_raw(detail::load(p)); }
-  void store(double* p) const { detail::store(p, v); }
+  static Pack load(const double* p) { return from_raw(simd::load(p)); }
+  void store(double* p) const { simd::store(p, v); }
 
-  double operator[](int lane) const { return detail::get_lane(v, lane); }
-  void set(int lane, double x) { detail::set_lane(v, lane, x); }
+  double operator[](int lane) const { return simd::get_lane(v, lane); }
+  void set(int lane, double x) { simd::set_lane(v, lane, x); }
 
   Pack& operator+=(Pack b) { return *this = *this + b; }
   Pack& operator-=(Pack b) { return *this = *this - b; }
@@ -89,39 +89,39 @@ struct Pack {
   friend Pack operator*(Pack a, Pack b) { return from_raw(a.v * b.v); }
   friend Pack operator/(Pack a, Pack b) { return from_raw(a.v / b.v); }
 
-  friend Mask operator<(Pack a, Pack b) { return Mask::from_raw(detail::less(a.v, b.v)); }
-  friend Mask operator<=(Pack a, Pack b) { return Mask::from_raw(detail::less_equal(a.v, b.v)); }
-  friend Mask operator>(Pack a, Pack b) { return Mask::from_raw(detail::less(b.v, a.v)); }
-  friend Mask operator>=(Pack a, Pack b) { return Mask::from_raw(detail::less_equal(b.v, a.v)); }
-  friend Mask operator==(Pack a, Pack b) { return Mask::from_raw(detail::equal(a.v, b.v)); }
+  friend Mask operator<(Pack a, Pack b) { return Mask::from_raw(simd::less(a.v, b.v)); }
+  friend Mask operator<=(Pack a, Pack b) { return Mask::from_raw(simd::less_equal(a.v, b.v)); }
+  friend Mask operator>(Pack a, Pack b) { return Mask::from_raw(simd::less(b.v, a.v)); }
+  friend Mask operator>=(Pack a, Pack b) { return Mask::from_raw(simd::less_equal(b.v, a.v)); }
+  friend Mask operator==(Pack a, Pack b) { return Mask::from_raw(simd::equal(a.v, b.v)); }
   friend Mask operator!=(Pack a, Pack b) { return !(a == b); }
 
   /// a where the mask is set, b elsewhere.
-  friend Pack select(Mask m, Pack a, Pack b) { return from_raw(detail::select(m.v, a.v, b.v)); }
+  friend Pack select(Mask m, Pack a, Pack b) { return from_raw(simd::select(m.v, a.v, b.v)); }
   /// The second argument where the two are unordered: min(limit, x) and max(limit, x) let a NaN in x through.
-  friend Pack min(Pack a, Pack b) { return from_raw(detail::min(a.v, b.v)); }
-  friend Pack max(Pack a, Pack b) { return from_raw(detail::max(a.v, b.v)); }
-  friend Pack abs(Pack a) { return from_raw(detail::abs(a.v)); }
-  friend Pack sqrt(Pack a) { return from_raw(detail::sqrt(a.v)); }
+  friend Pack min(Pack a, Pack b) { return from_raw(simd::min(a.v, b.v)); }
+  friend Pack max(Pack a, Pack b) { return from_raw(simd::max(a.v, b.v)); }
+  friend Pack abs(Pack a) { return from_raw(simd::abs(a.v)); }
+  friend Pack sqrt(Pack a) { return from_raw(simd::sqrt(a.v)); }
 
   /// Sum of all lanes in one fixed order: the upper half is added to the lower half until one lane is left,
   /// ((0+4)+(2+6)) + ((1+5)+(3+7)) for 8 lanes, (0+2)+(1+3) for 4.
   friend double horizontal_sum(Pack a) {
-    double x[detail::lanes];
+    double x[simd::lanes];
     a.store(x);
-    for (int half = detail::lanes / 2; half > 0; half /= 2)
+    for (int half = simd::lanes / 2; half > 0; half /= 2)
       for (int k = 0; k < half; ++k) x[k] += x[k + half];
     return x[0];
   }
   /// Smallest and largest lane.
   friend double horizontal_min(Pack a) {
     double x = a[0];
-    for (int k = 1; k < detail::lanes; ++k) x = a[k] < x ? a[k] : x;
+    for (int k = 1; k < simd::lanes; ++k) x = a[k] < x ? a[k] : x;
     return x;
   }
   friend double horizontal_max(Pack a) {
     double x = a[0];
-    for (int k = 1; k < detail::lanes; ++k) x = a[k] > x ? a[k] : x;
+    for (int k = 1; k < simd::lanes; ++k) x = a[k] > x ? a[k] : x;
     return x;
   }
 
@@ -134,14 +134,14 @@ struct Pack {
   }
   friend Pack pow(Pack a, Pack b) {
     Pack r;
-    for (int k = 0; k < detail::lanes; ++k) r.set(k, std::pow(a[k], b[k]));
+    for (int k = 0; k < simd::lanes; ++k) r.set(k, std::pow(a[k], b[k]));
     return r;
   }
 
   /// Applies a scalar function to each lane; for what has no SIMD form.
   template <class F>
   Pack each(F&& f) const {
-    double x[detail::lanes];
+    double x[simd::lanes];
     store(x);
     for (double& lane : x) lane = f(lane);
     return load(x);
@@ -150,36 +150,36 @@ struct Pack {
 
 /// One 32-bit index per lane.
 struct IndexPack {
-  detail::RawIndex v;
+  simd::RawIndex v;
 
-  static IndexPack from_raw(detail::RawIndex raw) {
+  static IndexPack from_raw(simd::RawIndex raw) {
     IndexPack p;
     p.v = raw;
     return p;
   }
   /// Reads `lanes` indices; no alignment is needed.
-  static IndexPack load(const std::uint32_t* p) { return from_raw(detail::load_index(p)); }
+  static IndexPack load(const std::uint32_t* p) { return from_raw(simd::load_index(p)); }
   /// first, first + 1, ...
   static IndexPack consecutive(std::uint32_t first) {
-    std::uint32_t x[detail::lanes];
+    std::uint32_t x[simd::lanes];
     for (std::uint32_t& lane : x) lane = first++;
     return load(x);
   }
-  std::uint32_t operator[](int lane) const { return detail::get_index(v, lane); }
+  std::uint32_t operator[](int lane) const { return simd::get_index(v, lane); }
 };
 
 /// base[index * Stride + Component] in each lane. index * Stride must stay below 2^31.
 template <int Stride = 1, int Component = 0>
 inline Pack gather(const double* base, IndexPack index) {
-  return Pack::from_raw(detail::gather<Stride>(base + Component, index.v));
+  return Pack::from_raw(simd::gather<Stride>(base + Component, index.v));
 }
 
 /// Lanes 0 ... n-1 (none if n <= 0, all if n >= lanes).
-inline Mask first_lanes(std::int64_t n) { return Mask::from_raw(detail::first_lanes(n)); }
+inline Mask first_lanes(std::int64_t n) { return Mask::from_raw(simd::first_lanes(n)); }
 
-inline bool any(Mask m) { return detail::mask_any(m.v); }
-inline bool none(Mask m) { return !detail::mask_any(m.v); }
-inline bool all(Mask m) { return !detail::mask_any(detail::mask_not(m.v)); }
+inline bool any(Mask m) { return simd::mask_any(m.v); }
+inline bool none(Mask m) { return !simd::mask_any(m.v); }
+inline bool all(Mask m) { return !simd::mask_any(simd::mask_not(m.v)); }
 
 // The same functions for plain numbers, with the same treatment of NaN and signed zero.
 inline constexpr double select(bool m, double a, double b) { return m ? a : b; }
@@ -215,7 +215,7 @@ template <>
 struct RealTraits<Pack> {
   using MaskType = Mask;
   using IndexType = IndexPack;
-  static constexpr int lanes = detail::lanes;
+  static constexpr int lanes = simd::lanes;
 };
 
 /// double or Pack.

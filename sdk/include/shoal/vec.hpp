@@ -315,7 +315,7 @@ namespace detail {
 template <int N, int K, class Index, class R>
 inline void gather_components(const double* base, Index index, R* out) {
   if constexpr (K < N) {
-    out[K] = gather<N, K>(base, index);
+    out[K] = shoal::gather<N, K>(base, index);
     gather_components<N, K + 1>(base, index, out);
   }
 }

@@ -19,7 +19,7 @@
 
 namespace shoal {
 inline namespace SHOAL_ISA_NAMESPACE {
-namespace detail {
+namespace simd {
 
 #if defined(__AVX512F__)
 
@@ -205,6 +205,6 @@ inline Raw gather(const double* base, RawIndex index) {
 
 #endif
 
-}  // namespace detail
+}  // namespace simd
 }  // namespace SHOAL_ISA_NAMESPACE
 }  // namespace shoal
