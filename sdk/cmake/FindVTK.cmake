@@ -11,6 +11,7 @@ endif()
 find_path(VTK_INCLUDE_DIR vtkObject.h PATH_SUFFIXES vtk-9.1
           HINTS "${PROJECT_SOURCE_DIR}/build/packages/libvtk9-dev/usr/include")
 set(required VTK_INCLUDE_DIR)
+set(VTK_VERSION 9.1)
 set(base CommonCore CommonDataModel CommonExecutionModel CommonMath CommonMisc sys)  # every module shows these
 foreach(component IN LISTS VTK_FIND_COMPONENTS base)
   if(component STREQUAL "sys")
@@ -36,5 +37,5 @@ endforeach()
 list(REMOVE_DUPLICATES VTK_LIBRARIES)
 list(REMOVE_DUPLICATES required)
 include(FindPackageHandleStandardArgs)
-find_package_handle_standard_args(VTK REQUIRED_VARS ${required} HANDLE_COMPONENTS
+find_package_handle_standard_args(VTK REQUIRED_VARS ${required} VERSION_VAR VTK_VERSION HANDLE_COMPONENTS
   REASON_FAILURE_MESSAGE "it comes with the packages of the component vtk in packages.txt")
