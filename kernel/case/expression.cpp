@@ -103,7 +103,8 @@ class Scanner {
   const std::string& clean() const { return clean_; }
   const std::map<std::string, double>& constants() const { return constants_; }
   const std::set<std::string>& functions() const { return functions_; }
-  bool uses_variables() const { return uses_variables_; }
+  const std::vector<std::string>& fields() const { return fields_; }
+  bool uses_variables() const { return uses_variables_ || !fields_.empty(); }
 
  private:
   void scan() {
@@ -170,6 +171,9 @@ class Scanner {
     while (end < text_.size() && is_name_part(text_[end])) ++end;
     const std::string word = text_.substr(first, end - first);
     if (word.empty() || !is_name_begin(word[0])) fail("a name is missing after '$'", begin);
+    if (!dollar && scope_.is_field) {
+      if (const std::size_t field_end = field(begin)) return field_end;
+    }
     if (end < text_.size() && text_[end] == '.')
       fail("'" + word + ".' cannot stand in an expression; names have no points", begin, end - begin + 1);
     if (dollar) clean_[begin] = ' ';
@@ -183,6 +187,19 @@ class Scanner {
     } else if (dollar || word != "pi") {
       constant(word, begin, end - begin);
     }
+    return end;
+  }
+
+  // The end of the name of a field, or 0.
+  std::size_t field(std::size_t begin) {
+    std::size_t end = begin;
+    while (end < text_.size() && (is_name_part(text_[end]) || text_[end] == '.')) ++end;
+    const std::string name = text_.substr(begin, end - begin);
+    const std::size_t next = text_.find_first_not_of(" \t\n", end);
+    if ((next != std::string::npos && text_[next] == '(') || find_function(name) != nullptr || name == "pi" ||
+        contains(scope_.variables, name) || (scope_.constant && scope_.constant(name)) || !scope_.is_field(name))
+      return 0;
+    if (!contains(fields_, name)) fields_.push_back(name);
     return end;
   }
 
@@ -217,6 +234,7 @@ class Scanner {
   const ExpressionScope& scope_;
   std::map<std::string, double> constants_;
   std::set<std::string> functions_;
+  std::vector<std::string> fields_;
   bool uses_variables_ = false;
 };
 
@@ -265,6 +283,7 @@ class Expression::Program {
   struct Instance {
     mu::Parser parser = bare_parser();
     std::array<double, 4> variables{};
+    std::vector<double> fields;
   };
 
   explicit Program(double value) : text(format_number(value)), constant(true), value(value) {}
@@ -274,6 +293,7 @@ class Expression::Program {
     clean_ = scanner.clean();
     constants_ = scanner.constants();
     functions_ = scanner.functions();
+    fields = scanner.fields();
     constant = !scanner.uses_variables();
     try {
       std::unique_ptr<Instance> first = make();
@@ -299,6 +319,7 @@ class Expression::Program {
   }
 
   std::string text;
+  std::vector<std::string> fields;
   bool constant = false;
   double value = 0;
 
@@ -311,6 +332,11 @@ class Expression::Program {
     for (std::size_t k = 0; k < variable_names.size(); ++k) {
       if (constants_.count(variable_names[k]) == 0)
         instance->parser.DefineVar(variable_names[k], &instance->variables[k]);
+    }
+    if (!fields.empty()) {
+      instance->parser.DefineNameChars("0123456789_.abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
+      instance->fields.resize(fields.size());
+      for (std::size_t k = 0; k < fields.size(); ++k) instance->parser.DefineVar(fields[k], &instance->fields[k]);
     }
     instance->parser.SetExpr(clean_);
     return instance;
@@ -331,20 +357,38 @@ const std::string& Expression::text() const { return program_->text; }
 bool Expression::is_constant() const { return program_->constant; }
 double Expression::value() const { return program_->value; }
 
+const std::vector<std::string>& Expression::fields() const { return program_->fields; }
+
+struct Expression::Points {
+  std::array<const double*, 3> coordinates{};
+  std::size_t stride = 1;
+  const double* const* columns = nullptr;  // of the fields
+};
+
+namespace {
+
+std::array<const double*, 3> interleaved(int dimensions, const double* points) {
+  return {dimensions > 0 ? points : nullptr, dimensions > 1 ? points + 1 : nullptr,
+          dimensions > 2 ? points + 2 : nullptr};
+}
+
+}  // namespace
+
 void Expression::evaluate(std::size_t n, const double* x, const double* y, const double* z, double t,
                           double* out) const {
-  const double* const coordinates[3] = {x, y, z};
-  run(n, coordinates, 1, t, out);
+  run(n, Points{{x, y, z}}, t, out);
 }
 
 void Expression::evaluate(int dimensions, std::size_t n, const double* points, double t, double* out) const {
-  const double* const coordinates[3] = {dimensions > 0 ? points : nullptr, dimensions > 1 ? points + 1 : nullptr,
-                                        dimensions > 2 ? points + 2 : nullptr};
-  run(n, coordinates, static_cast<std::size_t>(dimensions), t, out);
+  run(n, Points{interleaved(dimensions, points), static_cast<std::size_t>(dimensions)}, t, out);
 }
 
-void Expression::run(std::size_t n, const double* const coordinates[3], std::size_t stride, double t,
-                     double* out) const {
+void Expression::evaluate(int dimensions, std::size_t n, const double* points, const double* const* columns, double t,
+                          double* out) const {
+  run(n, Points{interleaved(dimensions, points), static_cast<std::size_t>(dimensions), columns}, t, out);
+}
+
+void Expression::run(std::size_t n, const Points& points, double t, double* out) const {
   if (program_->constant) {
     std::fill(out, out + n, program_->value);
     return;
@@ -354,8 +398,9 @@ void Expression::run(std::size_t n, const double* const coordinates[3], std::siz
   variables = {0, 0, 0, t};
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      if (coordinates[k] != nullptr) variables[k] = coordinates[k][i * stride];
+      if (points.coordinates[k] != nullptr) variables[k] = points.coordinates[k][i * points.stride];
     }
+    for (std::size_t k = 0; k < instance->fields.size(); ++k) instance->fields[k] = points.columns[k][i];
     out[i] = instance->parser.Eval();
   }
   program_->give_back(std::move(instance));

@@ -41,6 +41,8 @@ struct ExpressionScope {
   std::function<std::optional<double>(const std::string&)> constant;
   std::vector<std::string> constants;  ///< their names, for messages
   std::vector<std::string> variables;  ///< some of x, y, z, t
+  /// Whether a name is a value of a particle, "pressure" or "velocity.x"; asked for names that are nothing else.
+  std::function<bool(const std::string&)> is_field;
 };
 
 /// Immutable; a copy shares everything.
@@ -60,6 +62,12 @@ class Expression {
   /// The same for points of `dimensions` interleaved coordinates. [any thread, concurrently]
   void evaluate(int dimensions, std::size_t n, const double* points, double t, double* out) const;
 
+  /// The values of particles that it uses, by name; empty unless the scope has fields.
+  const std::vector<std::string>& fields() const;
+  /// The same for particles: columns[k][i] is the value of fields()[k] of particle i. [any thread, concurrently]
+  void evaluate(int dimensions, std::size_t n, const double* points, const double* const* columns, double t,
+                double* out) const;
+
   /// As plugins hold it; valid as long as this object.
   const shoal_expression* handle() const { return reinterpret_cast<const shoal_expression*>(this); }
   static const Expression& from_handle(const shoal_expression* handle) {
@@ -68,7 +76,8 @@ class Expression {
 
  private:
   class Program;
-  void run(std::size_t n, const double* const coordinates[3], std::size_t stride, double t, double* out) const;
+  struct Points;
+  void run(std::size_t n, const Points& points, double t, double* out) const;
   std::shared_ptr<Program> program_;
 };
 
