@@ -1,0 +1,230 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/output/reference.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "kernel/output/atomic_file.hpp"
+
+namespace shoal::kernel {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array<std::string_view, 5> measure_names{"rms", "relative_rms", "max", "peak", "final"};
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+// Headers carry units ("front [m]") that a case need not repeat.
+std::string without_unit(const std::string& header) {
+  const std::size_t bracket = header.rfind(" [");
+  return bracket == std::string::npos ? header : header.substr(0, bracket);
+}
+
+std::size_t column_of(const Table& table, const std::string& wanted, const std::filesystem::path& path) {
+  for (std::size_t k = 0; k < table.names.size(); ++k) {
+    if (table.names[k] == wanted || without_unit(table.names[k]) == wanted) return k;
+  }
+  const std::size_t n = table.rows[0].size();
+  std::size_t number = 0;
+  const char* last = wanted.data() + wanted.size();
+  if (std::from_chars(wanted.data(), last, number).ptr == last && number >= 1 && number <= n) return number - 1;
+  throw OutputError("'" + path.string() + "' has no column '" + wanted + "'; it has " +
+                    (table.names.empty() ? std::to_string(n) + " columns without names" : joined(table.names)));
+}
+
+Series sorted(Series series) {
+  std::vector<std::size_t> order(series.times.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return series.times[a] < series.times[b]; });
+  Series result;
+  for (const std::size_t k : order) {
+    result.times.push_back(series.times[k]);
+    result.values.push_back(series.values[k]);
+  }
+  return result;
+}
+
+// Linear between samples; NaN where either side is, or outside.
+double value_at(const Series& series, double time) {
+  const double slack = 1e-9 * std::abs(time);
+  if (series.times.empty() || time < series.times.front() - slack || time > series.times.back() + slack) return nan;
+  const auto after = std::upper_bound(series.times.begin(), series.times.end(), time);
+  if (after == series.times.begin()) return series.values.front();
+  if (after == series.times.end()) return series.values.back();
+  const auto k = static_cast<std::size_t>(after - series.times.begin());
+  const double share = (time - series.times[k - 1]) / (series.times[k] - series.times[k - 1]);
+  if (share <= 0.0) return series.values[k - 1];
+  return (1.0 - share) * series.values[k - 1] + share * series.values[k];
+}
+
+struct Pairs {
+  std::vector<double> sampled, reference;
+  std::uint64_t left_out = 0;
+
+  void add(double value, double known) {
+    if (std::isnan(value) || std::isnan(known)) {
+      ++left_out;
+    } else {
+      sampled.push_back(value);
+      reference.push_back(known);
+    }
+  }
+};
+
+double largest_magnitude(const std::vector<double>& values) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+double difference(ErrorMeasure measure, const Pairs& pairs) {
+  std::vector<double> differences(pairs.sampled.size());
+  for (std::size_t k = 0; k < differences.size(); ++k) differences[k] = pairs.sampled[k] - pairs.reference[k];
+  switch (measure) {
+    case ErrorMeasure::max: return largest_magnitude(differences);
+    case ErrorMeasure::last: return std::abs(differences.back());
+    case ErrorMeasure::peak:
+      return std::abs(*std::max_element(pairs.sampled.begin(), pairs.sampled.end()) -
+                      *std::max_element(pairs.reference.begin(), pairs.reference.end()));
+    case ErrorMeasure::rms:
+    case ErrorMeasure::relative_rms: break;
+  }
+  return root_mean_square(differences);
+}
+
+double divisor(const ReferenceSpecification& specification, const Pairs& pairs) {
+  if (specification.scale) return *specification.scale;
+  if (specification.measure == ErrorMeasure::last) return std::abs(pairs.reference.back());
+  if (specification.measure == ErrorMeasure::relative_rms) return root_mean_square(pairs.reference);
+  return largest_magnitude(pairs.reference);
+}
+
+bool in_window(const ReferenceSpecification& specification, double time) {
+  const double slack = 1e-9 * std::abs(time);
+  return time >= specification.from - slack && (!specification.to || time <= *specification.to + slack);
+}
+
+// Peaks are taken over all samples: those at the times of the data alone would miss the highest.
+Pairs peak_pairs(const ReferenceSpecification& specification, const Series& sampled, const Series& known) {
+  Pairs pairs;
+  double peak = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < sampled.times.size(); ++k) {
+    if (!in_window(specification, sampled.times[k])) continue;
+    if (std::isnan(sampled.values[k])) ++pairs.left_out;
+    else peak = std::max(peak, sampled.values[k]);
+  }
+  if (std::isfinite(peak)) {
+    for (const double value : known.values) pairs.reference.push_back(value);
+    pairs.sampled.assign(known.values.size(), peak);
+  }
+  return pairs;
+}
+
+}  // namespace
+
+std::optional<ErrorMeasure> error_measure(std::string_view name) {
+  for (std::size_t k = 0; k < measure_names.size(); ++k)
+    if (measure_names[k] == name) return static_cast<ErrorMeasure>(k);
+  return std::nullopt;
+}
+
+std::string_view name_of(ErrorMeasure measure) { return measure_names[static_cast<std::size_t>(measure)]; }
+
+std::string_view name_of(Verdict verdict) {
+  return verdict == Verdict::pass ? "pass" : verdict == Verdict::fail ? "FAIL" : "incomplete";
+}
+
+Series read_reference(const ReferenceSpecification& specification) {
+  const Table table = read_table(specification.data);
+  const std::size_t time = column_of(table, specification.time_column, specification.data);
+  const std::size_t value = column_of(table, specification.value_column, specification.data);
+  Series series;
+  for (const std::vector<double>& row : table.rows) {
+    const double t = specification.time_scale * row[time] + specification.time_shift;
+    if (std::isnan(t) || std::isnan(row[value]) || !in_window(specification, t)) continue;
+    series.times.push_back(t);
+    series.values.push_back(specification.value_scale * row[value] + specification.value_shift);
+  }
+  return sorted(std::move(series));
+}
+
+void check_reference(const ReferenceSpecification& specification) {
+  if (specification.exact) return;
+  if (read_reference(specification).times.empty())
+    throw OutputError("'" + specification.data.string() + "' has no point between the times that are to be compared");
+}
+
+ReferenceResult compare(const ReferenceSpecification& specification, const Series& sampled, bool finished) {
+  ReferenceResult result;
+  result.probe = specification.probe;
+  result.source = specification.exact ? "exact: " + specification.exact_text : specification.data.filename().string();
+  result.measure = std::string(name_of(specification.measure));
+  result.tolerance = specification.tolerance;
+  Series known;
+  if (specification.exact) {
+    for (const double time : sampled.times) {
+      if (!in_window(specification, time)) continue;
+      known.times.push_back(time);
+      known.values.push_back(specification.exact(time));
+    }
+  } else {
+    known = read_reference(specification);
+  }
+  Pairs pairs;
+  if (specification.measure == ErrorMeasure::peak) {
+    pairs = peak_pairs(specification, sampled, known);
+  } else {
+    for (std::size_t k = 0; k < known.times.size(); ++k) pairs.add(value_at(sampled, known.times[k]), known.values[k]);
+  }
+  result.points = pairs.sampled.size();
+  result.left_out = pairs.left_out;
+  if (pairs.sampled.empty()) {
+    result.error = nan;
+    result.remark = "the probe has no value at the times of the reference";
+  } else {
+    const double by = divisor(specification, pairs);
+    result.error = difference(specification.measure, pairs) / by;
+    if (by == 0.0) result.remark = "the reference is zero: give `scale`, what errors are to be divided by";
+    else if (result.left_out > 0) result.remark = std::to_string(result.left_out) + " points without a value left out";
+  }
+  const bool whole = finished || (specification.to && !sampled.times.empty() && sampled.times.back() >= *specification.to);
+  if (!whole) result.verdict = Verdict::incomplete;
+  else result.verdict = result.error <= result.tolerance ? Verdict::pass : Verdict::fail;
+  return result;
+}
+
+ReferenceResult compare_file(const ReferenceSpecification& specification, const std::filesystem::path& path,
+                             bool finished) {
+  Series sampled;
+  try {
+    const Table table = read_table(path);
+    const std::size_t value = specification.column.empty() ? 1 : column_of(table, specification.column, path);
+    for (const std::vector<double>& row : table.rows) {
+      sampled.times.push_back(row[0]);
+      sampled.values.push_back(row[value]);
+    }
+  } catch (const OutputError& error) {
+    ReferenceResult result = compare(specification, Series{}, finished);
+    result.remark = error.what();
+    return result;
+  }
+  return compare(specification, sampled, finished);
+}
+
+}  // namespace shoal::kernel

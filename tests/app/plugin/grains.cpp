@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Soft grains that fall on a floor: a small physics with everything that the program has to handle (neighbours, a
+// time step that depends on the particles, a field on demand, a failure), so that it is tested without the real ones.
+//
+//   dv_i/dt = g + (k / m) sum_j max(0, 1 - r / r_c) e_ij - c v_i        semi-implicit Euler
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "shoal/shoal.hpp"
+
+namespace grains {
+
+using namespace shoal;
+
+struct Matter : Material {
+  Param<double> density{"density", "kg/m3", "Density.", positive, default_to(1000.0), example("800")};
+};
+
+struct SetMass : ParticleOperator<SetMass> {
+  double density = 0;
+  In<Scalar> volume{"volume"};
+  Out<Scalar> mass{"mass"};
+  void particle(auto i) const { mass[i] = density * volume[i]; }
+};
+
+struct Repulsion : PairOperator<Repulsion> {
+  double stiffness = 0, reach = 0;
+  In<Scalar> mass{"mass", own_only};
+  Accumulate<Vector> acceleration{"acceleration"};
+
+  auto pair(const auto& p) const { return max(0.0, 1.0 - p.r() / reach) * p.e(); }
+  void particle(auto i, auto sum) const { acceleration[i] += stiffness / mass[i] * sum; }
+};
+
+struct Weight : ParticleOperator<Weight> {
+  Vector3 gravity{};
+  Accumulate<Vector> acceleration{"acceleration"};
+  void particle(auto i) const {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(i.dimensions); ++k)
+      acceleration[i][static_cast<int>(k)] += gravity[k];
+  }
+};
+
+struct Move : ParticleOperator<Move> {
+  double damping = 0, floor = 0, longest_step = 0, breakdown = 0;
+  In<Vector> acceleration{"acceleration"};
+  InOut<Vector> velocity{"velocity"};
+  InOut<Vector> position{"position"};
+
+  void particle(auto i) const {
+    velocity[i] += dt() * (acceleration[i] - damping * velocity[i]);
+    if (position[i][1] < floor && velocity[i][1] < 0.0) velocity[i][1] = -velocity[i][1];
+    position[i] += dt() * velocity[i];
+    if (time() >= breakdown && i.index == 3) velocity[i][0] = std::numeric_limits<double>::quiet_NaN();
+  }
+  double time_step_of(auto i) const {
+    const double speed = std::sqrt(squared_norm(velocity[i]));
+    return std::min(longest_step, 0.1 * smoothing_length() / (speed + 1e-12));
+  }
+};
+
+struct KineticEnergy : ParticleOperator<KineticEnergy> {
+  In<Vector> velocity{"velocity"};
+  In<Scalar> mass{"mass"};
+  Out<Scalar> kinetic_energy{"kinetic_energy", unit("J"), doc("Kinetic energy of a particle."), derived};
+  void particle(auto i) const { kinetic_energy[i] = 0.5 * mass[i] * squared_norm(velocity[i]); }
+};
+
+class Falling : public Physics {
+ public:
+  Param<std::vector<BodyIndex>> bodies{"bodies", nullptr, "Bodies of grains.", example("[pile]")};
+  Param<double> stiffness{"stiffness", "N", "Force between two grains at the same place.", non_negative,
+                          default_to(50.0)};
+  Param<double> damping{"damping", "1/s", "Rate at which velocities decay.", non_negative, default_to(0.0)};
+  Param<double> floor{"floor", "m", "Height of the floor.", default_to(0.0)};
+  Param<double> longest_step{"longest_step", "s", "No step is longer.", positive, default_to(1e-3)};
+  Param<double> breakdown{"breakdown", "s", "From then on a velocity is not a number.", optional};
+
+  void build(const Builder& builder) const {
+    builder.loop("motion", {"forces", "move"});
+    builder.renew_neighbours_in("motion");
+    for (const BodyIndex body : bodies.value()) build(builder, body);
+    builder.note("grains of stiffness " + std::to_string(stiffness.value()) + " N");
+  }
+
+ private:
+  void build(const Builder& builder, BodyIndex body) const {
+    const Target target = builder.target(body);
+    const double density = builder.material<Matter>(body, "grains.matter")->density;
+    builder.body_moves(body);
+    builder.own_field(body, "acceleration", {"motion", "forces"});
+    builder.guard(body, "velocity", -1e3, 1e3);
+    builder.attach<SetMass>("grains.set_mass", {SHOAL_INITIAL, "mass"}, target,
+                            [&](SetMass& op) { op.density = density; });
+    builder.attach<Weight>("grains.weight", {"motion", "forces"}, target,
+                           [&](Weight& op) { op.gravity = builder.gravity(); });
+    builder.attach<Repulsion>("grains.repulsion", {"motion", "forces"}, target, [&](Repulsion& op) {
+      op.stiffness = stiffness;
+      op.reach = target.cutoff;
+    });
+    builder.attach<Move>("grains.move", {"motion", "move"}, target, [&](Move& op) {
+      op.damping = damping;
+      op.floor = floor;
+      op.longest_step = longest_step;
+      op.breakdown = breakdown.value_or(std::numeric_limits<double>::infinity());
+    });
+    builder.attach<KineticEnergy>("grains.kinetic_energy", {SHOAL_SAMPLE, "energy"}, target, [](KineticEnergy&) {},
+                                  SHOAL_OPERATOR_ON_DEMAND);
+  }
+};
+
+}  // namespace grains
+
+SHOAL_PLUGIN(grains, "1.0.0") {
+  summary("Soft grains, to test the program with.");
+  add<grains::Matter>("grains.matter", "What grains are made of.");
+  add<grains::Falling>("grains.falling", "Grains that fall on a floor.");
+}
