@@ -9,6 +9,8 @@
 // Rules of growth
 // - A struct grows only at its end. Its first member is its size in bytes as its maker knew it, and a reader uses
 //   no member beyond that size (SHOAL_HAS). Enumerators never change meaning.
+// - So the elements of an array of structs lie as far apart as `size` of its first element says, which need not be
+//   what sizeof says here (SHOAL_AT).
 // - Binaries of the same ABI major work together whatever their minors. A changed meaning is a new major.
 // - All texts are UTF-8, end in a zero byte, and are borrowed: the maker keeps them alive for as long as the object
 //   that they describe. Whoever allocates, frees.
@@ -33,6 +35,10 @@ extern "C" {
 // Whether the object that `pointer` points to is large enough to hold `member`.
 #define SHOAL_HAS(type, pointer, member) \
   ((pointer)->size >= offsetof(type, member) + sizeof((pointer)->member))
+
+// Pointer to element `index` of an array of structs that the other side made.
+#define SHOAL_AT(type, array, index) \
+  ((const type*)((const char*)(array) + (size_t)(index) * (size_t)(array)->size))
 
 // Rows of neighbour lists and all field arrays are padded to this many entries, so that a plugin may use any
 // number of SIMD lanes up to it.
@@ -330,6 +336,7 @@ typedef struct shoal_builder {
   double end_time;               // s
   double lower[3], upper[3];     // the domain, m; infinite where it is open
   uint32_t periodic[3];          // 1 where the domain repeats
+  uint32_t reserved_2;
   // Declares loop `name` with its stages in order, or adds stages to an existing one. At the top if `parent` is
   // NULL, else inside stage `parent_stage` of `parent`, where it sub-cycles to cover the parent's step. A later
   // call with a parent moves a top loop into it (how couplings nest the loops of others).

@@ -43,7 +43,7 @@ Sums<Values...> sums(Values... values) {
 }
 
 inline namespace SHOAL_ISA_NAMESPACE {
-namespace detail {
+namespace pair_loop {
 
 // Adds the pairs of the lanes that hold a neighbour; the scalar loop has one lane, always full.
 template <Real R>
@@ -74,7 +74,7 @@ void finish_particle(const Op& op, Particle<D> i, const Sums<Values...>& sum) {
   std::apply([&](const auto&... value) { op.particle(i, horizontal_sum(value)...); }, sum.values);
 }
 
-}  // namespace detail
+}  // namespace pair_loop
 
 // One particle i and `lanes` of its neighbours j (R = Pack), or one neighbour (R = double).
 template <int D, class R, class Kernel>
@@ -171,7 +171,7 @@ class PairOperator : public OperatorBase {
       const Particle<D> i{index, chunk.partial};
       Result sum{};
       for (std::size_t k = 0; k < n_relations(); ++k) add_row<R>(kernel, k, i, sum);
-      detail::finish_particle(self(), i, sum);
+      pair_loop::finish_particle(self(), i, sum);
     }
   }
 
@@ -184,11 +184,11 @@ class PairOperator : public OperatorBase {
     const double* x_of_neighbours = position_.of_neighbours(k);
     if constexpr (std::is_same_v<R, double>) {
       for (std::uint32_t m = 0; m < n; ++m)
-        detail::add_lanes(sum, self().pair(Pair<D, R, Kernel>(kernel, k, i, x_i, x_of_neighbours, row[m])), true);
+        pair_loop::add_lanes(sum, self().pair(Pair<D, R, Kernel>(kernel, k, i, x_i, x_of_neighbours, row[m])), true);
     } else {
       for (std::uint32_t m = 0; m < n; m += lanes) {
         const Pair<D, R, Kernel> p(kernel, k, i, x_i, x_of_neighbours, IndexPack::load(row + m));
-        detail::add_lanes(sum, self().pair(p), first_lanes(static_cast<std::int64_t>(n) - m));
+        pair_loop::add_lanes(sum, self().pair(p), first_lanes(static_cast<std::int64_t>(n) - m));
       }
     }
   }

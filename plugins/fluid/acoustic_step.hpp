@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Position-based Verlet of one acoustic step (Zhang, Rezavand, Hu 2021, section 3.2):
+//   rho^(n+1/2) = rho^n + dt/2 (d rho/dt)^n,   r^(n+1/2) = r^n + dt/2 v^n          AcousticPredictor
+//   v^(n+1)     = v^n + dt (dv/dt)^(n+1/2)                                         PressureForce, Kick
+//   r^(n+1)     = r^(n+1/2) + dt/2 v^(n+1)                                         Kick
+//   rho^(n+1)   = rho^(n+1/2) + dt/2 (d rho/dt)^(n+1)                              VelocityDivergence, DensityCorrector
+// Stable for dt <= 0.6 h / (c + |v|_max) with the low-dissipation Riemann solver.
+#pragma once
+
+#include "shoal/interfaces/equation_of_state.h"
+#include "shoal/particle_operator.hpp"
+#include "shoal/physics.hpp"
+
+namespace shoal::fluid {
+
+using EquationOfState = Interface<shoal_equation_of_state>;
+
+// Half a step of density and position; pressure and volume from the new density.
+struct AcousticPredictor : ParticleOperator<AcousticPredictor> {
+  In<Vector> velocity{"velocity"};
+  In<Scalar> mass{"mass"};
+  In<Scalar> density_rate{"density_rate", unit("kg/m3/s"), doc("Rate of change of the density.")};
+  InOut<Vector> position{"position"};
+  InOut<Scalar> density{"density"};
+  Out<Scalar> pressure{"pressure"};
+  Out<Scalar> volume{"volume"};
+
+  EquationOfState equation_of_state;
+  double sound_speed = 0;  // m/s
+  double cfl = 0.6;
+
+  void block(std::uint64_t begin, std::uint64_t end) const {
+    const double half = 0.5 * dt();
+    const double *rate = density_rate.data(), *m = mass.data(), *v = velocity.data();
+    double *rho = density.data(), *vol = volume.data(), *x = position.data();
+    for (std::uint64_t i = begin; i < end; ++i) {
+      rho[i] += half * rate[i];
+      vol[i] = m[i] / rho[i];
+    }
+    const auto d = static_cast<std::uint64_t>(dimensions());
+    for (std::uint64_t k = begin * d; k < end * d; ++k) x[k] += half * v[k];
+    equation_of_state.api->pressure(equation_of_state.self, end - begin, rho + begin, pressure.data() + begin);
+  }
+  double time_step_of(auto i) const { return cfl * smoothing_length() / (sound_speed + norm(velocity[i])); }
+};
+
+// A full step of velocity and half a step of position.
+struct Kick : ParticleOperator<Kick> {
+  In<Vector> acceleration{"acceleration"};
+  In<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"), doc("Acceleration by pressure.")};
+  InOut<Vector> velocity{"velocity"};
+  InOut<Vector> position{"position"};
+
+  void particle(auto i) const {
+    velocity[i] += dt() * (acceleration[i] + pressure_acceleration[i]);
+    position[i] += 0.5 * dt() * velocity[i];
+  }
+};
+
+// The second half of the step of density.
+struct DensityCorrector : ParticleOperator<DensityCorrector> {
+  In<Scalar> density_rate{"density_rate", unit("kg/m3/s"), doc("Rate of change of the density.")};
+  InOut<Scalar> density{"density"};
+
+  void particle(auto i) const { density[i] += 0.5 * dt() * density_rate[i]; }
+};
+
+}  // namespace shoal::fluid

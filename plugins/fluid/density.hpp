@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Density re-initialisation, once in an advection step (Zhang, Hu, Adams 2017; Rezavand, Zhang, Hu 2020):
+//   rho_s = rho0 sum_j W_ij / sigma0,    sigma0 = sum of W over the lattice of the initial spacing, itself included
+//   rho_i = rho_s                                          where no free surface is
+//   rho_i = rho_s + max(0, rho_i - rho_s) rho0 / rho_i     with a free surface: where the support is cut off, the
+//                                                          density of the continuity equation is kept
+// so that errors of the continuity equation do not add up over many steps.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "shoal/pair_operator.hpp"
+
+namespace shoal::fluid {
+
+// sum of W over a lattice, the particle in its middle included, in 1/m^D.
+inline double lattice_sum(int dimensions, SmoothingKernel kind, double h, double spacing) {
+  const auto sum = [&](const auto& kernel) {
+    const int n = static_cast<int>(kernel.cutoff() / spacing) + 1;
+    const int depth = dimensions == 3 ? n : 0;
+    double total = 0;
+    for (int a = -n; a <= n; ++a)
+      for (int b = -n; b <= n; ++b)
+        for (int c = -depth; c <= depth; ++c) total += kernel.w(spacing * std::sqrt(double(a * a + b * b + c * c)));
+    return total;
+  };
+  return dimensions == 2 ? with_kernel<2>(kind, h, sum) : with_kernel<3>(kind, h, sum);
+}
+
+// sum_j V_j W_ij of the walls; runs before DensityReinitialisation, which adds it.
+struct WallDensity : PairOperator<WallDensity> {
+  In<Scalar> wall_volume{"volume", neighbours_only};
+  Out<Scalar> wall_sum{"wall_density_sum", unit("1"), doc("Sum of V W over wall particles."), derived};
+
+  auto pair(const auto& p) const { return p.j(wall_volume) * p.W(); }
+  void particle(auto i, auto sum) const { wall_sum[i] = sum; }
+};
+
+template <class Derived>
+struct DensitySum : PairOperator<Derived> {
+  In<Scalar> mass{"mass", own_only};
+  InOut<Scalar> density{"density"};
+  Out<Scalar> volume{"volume"};
+
+  double reference_density = 0;  // kg/m3
+  double per_lattice_sum = 0;    // 1 / sigma0, m^D
+  bool free_surface = true;
+
+  auto pair(const auto& p) const { return p.W(); }
+
+ protected:
+  void reinitialise(auto i, double sum, double wall_sum) const {
+    const double rest_volume = mass[i] / reference_density;
+    const double summed =
+        reference_density * per_lattice_sum * (sum + this->self_W() + wall_sum / rest_volume);
+    const double excess = free_surface ? std::max(0.0, density[i] - summed) * reference_density / density[i] : 0.0;
+    density[i] = summed + excess;
+    volume[i] = mass[i] / density[i];
+  }
+};
+
+struct DensityReinitialisation : DensitySum<DensityReinitialisation> {
+  void particle(auto i, double sum) const { reinitialise(i, sum, 0.0); }
+};
+
+struct DensityReinitialisationAtWalls : DensitySum<DensityReinitialisationAtWalls> {
+  In<Scalar> wall_sum{"wall_density_sum", unit("1"), doc("Sum of V W over wall particles."), own_only};
+  void particle(auto i, double sum) const { reinitialise(i, sum, wall_sum[i]); }
+};
+
+}  // namespace shoal::fluid

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Walls: a one-sided Riemann problem between a fluid particle i and the wall's particle j (Zhang, Hu, Adams 2017;
+// Zhang, Rezavand, Hu 2021). The wall's state is the mirror image of the fluid's:
+//   pressure  p_w = p_i + rho a_i.(r_j - r_i): the linear field that balances the acceleration a_i by all but pressure
+//             (gravity), so that a fluid at rest feels the exact hydrostatic force; p_w >= min(p_i, 0): a wall does
+//             not pull
+//   velocity  v_w' = v_i - 2 [(v_i - v_w).n] n            n: the wall's normal, towards the fluid
+// The papers take max(0, -a_i.e) r instead of the full field. At a vertical wall that drops the wall particles
+// above i, and half of the vertical pressure gradient with them: the fluid at the wall sinks.
+#pragma once
+
+#include "shoal/pair_operator.hpp"
+
+#include "viscosity.hpp"
+
+namespace shoal::fluid {
+
+// The wall's normal, turned to the side where the fluid is: behind the middle of a shell it points outward.
+template <class Normal, class Direction>
+auto towards(const Direction& fluid, const Normal& n) {
+  auto along = dot(n, fluid);
+  using R = decltype(along);
+  return select(along < 0.0, R(-1.0), R(1.0)) * n;
+}
+
+// Pressure of the wall's image of a fluid particle; `to_wall` is the wall particle's position less the fluid's.
+template <class P, class A, class X>
+auto wall_pressure(double rho, const P& fluid_pressure, const A& acceleration, const X& to_wall) {
+  return max(min(fluid_pressure, 0.0), fluid_pressure + rho * dot(acceleration, to_wall));
+}
+
+// The walls' share of PressureForce. Runs after it.
+struct WallPressureForce : PairOperator<WallPressureForce> {
+  In<Scalar> pressure{"pressure", own_only};
+  In<Scalar> density{"density", own_only};
+  In<Vector> acceleration{"acceleration", own_only};
+  In<Scalar> wall_volume{"volume", neighbours_only};
+  InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"), doc("Acceleration by pressure.")};
+
+  double reference_density = 0;  // kg/m3
+
+  auto pair(const auto& p) const {
+    const auto p_w = wall_pressure(reference_density, p.i(pressure), p.i(acceleration), -p.r_ij());
+    return (p.j(wall_volume) * p.dW_over_r() * (p.i(pressure) + p_w)) * p.r_ij();
+  }
+  void particle(auto i, auto force) const { pressure_acceleration[i] -= force / density[i]; }
+};
+
+// The walls' share of VelocityDivergence. Runs after it.
+struct WallVelocityDivergence : PairOperator<WallVelocityDivergence> {
+  In<Vector> velocity{"velocity", own_only};
+  In<Scalar> density{"density", own_only};
+  In<Vector> wall_velocity{"velocity", neighbours_only};
+  In<Vector> wall_normal{"normal", neighbours_only};
+  In<Scalar> wall_volume{"volume", neighbours_only};
+  InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"), doc("Acceleration by pressure.")};
+  InOut<Scalar> density_rate{"density_rate", unit("kg/m3/s"), doc("Rate of change of the density.")};
+
+  double sound_speed = 0;  // m/s
+  double limiter = 3.0;
+
+  auto pair(const auto& p) const {
+    const auto weight = p.j(wall_volume) * p.dW_over_r();
+    const auto n = towards(p.r_ij(), p.j(wall_normal));
+    const auto v_n = 2.0 * dot(p.i(velocity) - p.j(wall_velocity), n);  // (v_i - v_w').n
+    const auto approach = max(0.0, -v_n);
+    const auto beta = min(1.0, (limiter / sound_speed) * approach);
+    return sums(weight * v_n * dot(n, p.r_ij()), (weight * p.r() * beta * approach) * n);
+  }
+  void particle(auto i, auto divergence, auto dissipation) const {
+    density_rate[i] += density[i] * divergence;
+    pressure_acceleration[i] -= sound_speed * dissipation;
+  }
+};
+
+// Force of the fluid on each wall particle, in N: the opposite of what the walls do to the fluid. On demand.
+// Here i is the wall's particle and j the fluid's.
+struct WallForce : PairOperator<WallForce> {
+  In<Vector> velocity{"velocity"};
+  In<Scalar> volume{"volume"};
+  In<Vector> wall_normal{"normal", own_only};
+  In<Scalar> wall_distance{"signed_distance", own_only};
+  In<Scalar> pressure{"pressure", neighbours_only};
+  In<Vector> acceleration{"acceleration", neighbours_only};
+  Out<Vector> force{"force", derived};
+
+  double reference_density = 0;  // kg/m3
+  double sound_speed = 0;        // m/s
+  double viscosity = 0;          // Pa s; 0 on free-slip walls
+  double limiter = 3.0;
+
+  auto pair(const auto& p) const {
+    const auto weight = p.j(volume) * p.dW_over_r();
+    const auto p_w = wall_pressure(reference_density, p.j(pressure), p.j(acceleration), p.r_ij());
+    const auto n = towards(-p.r_ij(), p.i(wall_normal));
+    const auto v = p.j(velocity) - p.i(velocity);
+    const auto approach = max(0.0, -2.0 * dot(v, n));
+    const auto impact = reference_density * sound_speed * approach * min(1.0, (limiter / sound_speed) * approach);
+    const auto shear = 2.0 * viscosity * no_slip_factor(-dot(n, p.r_ij()), p.i(wall_distance)) * p.r() /
+                       (p.r() + 0.01 * p.h());
+    return weight * (impact * p.r() * n - (p.j(pressure) + p_w) * p.r_ij() - shear * v);
+  }
+  void particle(auto i, auto sum) const { force[i] = volume[i] * sum; }
+};
+
+}  // namespace shoal::fluid

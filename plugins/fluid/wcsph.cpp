@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+#include "wcsph.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "acoustic_step.hpp"
+#include "advection_step.hpp"
+#include "density.hpp"
+#include "liquid.hpp"
+#include "riemann.hpp"
+#include "viscosity.hpp"
+#include "wall.hpp"
+
+namespace shoal::fluid {
+namespace {
+
+constexpr At at_shift{"advection", "shift"};
+constexpr At at_density{"advection", "density"};
+constexpr At at_forces{"advection", "forces"};
+constexpr At at_acoustic{"advection", "acoustic"};
+constexpr At at_predict{"acoustic", "predict"};
+constexpr At at_momentum{"acoustic", "momentum"};
+constexpr At at_kick{"acoustic", "kick"};
+constexpr At at_continuity{"acoustic", "continuity"};
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+// Extent along gravity of all fluid together, m.
+double height(const Builder& b, const std::vector<BodyIndex>& bodies, const Vector3& g, double magnitude) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const BodyIndex index : bodies) {
+    const shoal_body& body = b.body(index);
+    for (int corner = 0; corner < 8; ++corner) {
+      double along = 0;
+      for (unsigned a = 0; a < 3; ++a) along += g[a] / magnitude * ((corner >> a & 1) ? body.upper[a] : body.lower[a]);
+      low = std::min(low, along);
+      high = std::max(high, along);
+    }
+  }
+  return high - low;
+}
+
+// What the operators of one fluid body share.
+struct FluidBody {
+  const Builder& b;
+  const Wcsph& physics;
+  BodyIndex body;
+  std::vector<BodyIndex> walls, no_slip_walls;
+  EquationOfState equation_of_state;
+  double density, viscosity, sound_speed, max_speed;
+
+  bool has_walls() const { return !walls.empty(); }
+  Target itself() const { return b.target(body); }
+  Target and_walls() const { return b.target(body, walls); }
+
+  void attach_initial() const {
+    b.attach<InitialState>("fluid.initial_state", {SHOAL_INITIAL, "state"}, itself(),
+                           [&](auto& op) { op.equation_of_state = equation_of_state; });
+  }
+
+  void attach_shift() const {
+    if (physics.free_surface || physics.shift_strength == 0.0) return;
+    const auto strength = [&](auto& op) { op.strength = physics.shift_strength; };
+    b.attach<TransportShift>("fluid.transport_shift", at_shift, itself(), strength);
+    if (has_walls()) b.attach<WallTransportShift>("fluid.transport_shift.walls", at_shift, and_walls(), strength);
+    b.attach<ApplyShift>("fluid.apply_shift", at_shift, itself());
+  }
+
+  void attach_density() const {
+    const Target target = itself();
+    const auto setup = [&](auto& op) {
+      op.reference_density = density;
+      op.per_lattice_sum =
+          1.0 / lattice_sum(b.dimensions(), target.smoothing_kernel, target.smoothing_length, target.spacing);
+      op.free_surface = physics.free_surface;
+    };
+    if (has_walls()) {
+      b.attach<WallDensity>("fluid.density.walls", at_density, and_walls());
+      b.attach<DensityReinitialisationAtWalls>("fluid.density", at_density, target, setup);
+    } else {
+      b.attach<DensityReinitialisation>("fluid.density", at_density, target, setup);
+    }
+  }
+
+  void attach_forces() const {
+    b.own_field(body, "acceleration", at_forces);
+    b.attach<AdvectionStep>("fluid.advection_step", at_forces, itself(), [&](auto& op) {
+      op.expected_speed = max_speed;
+      op.cfl = physics.advection_cfl;
+    });
+    const Vector3 g = b.gravity();
+    if (g != Vector3{})
+      b.attach<Gravity>("fluid.gravity", at_forces, itself(), [&](auto& op) { op.gravity = g; });
+    if (viscosity == 0.0) return;
+    b.attach<ViscousForce>("fluid.viscous_force", at_forces, itself(), [&](auto& op) {
+      op.viscosity = viscosity;
+      op.reference_density = density;
+    });
+    if (!no_slip_walls.empty())
+      b.attach<WallViscousForce>("fluid.viscous_force.walls", at_forces, b.target(body, no_slip_walls),
+                                 [&](auto& op) { op.viscosity = viscosity; });
+  }
+
+  void attach_acoustic() const {
+    b.attach<AcousticPredictor>("fluid.predict", at_predict, itself(), [&](auto& op) {
+      op.equation_of_state = equation_of_state;
+      op.sound_speed = sound_speed;
+      op.cfl = physics.acoustic_cfl;
+    });
+    b.attach<PressureForce>("fluid.pressure_force", at_momentum, itself(), [&](auto& op) {
+      op.reference_density = density;
+      op.sound_speed = sound_speed;
+    });
+    if (has_walls())
+      b.attach<WallPressureForce>("fluid.pressure_force.walls", at_momentum, and_walls(),
+                                  [&](auto& op) { op.reference_density = density; });
+    b.attach<Kick>("fluid.kick", at_kick, itself());
+    const auto riemann = [&](auto& op) {
+      op.sound_speed = sound_speed;
+      op.limiter = physics.dissipation_limiter;
+    };
+    b.attach<VelocityDivergence>("fluid.divergence", at_continuity, itself(), riemann);
+    if (has_walls()) b.attach<WallVelocityDivergence>("fluid.divergence.walls", at_continuity, and_walls(), riemann);
+    b.attach<DensityCorrector>("fluid.correct_density", at_continuity, itself());
+  }
+
+  // The force on a wall, for those who ask for it.
+  void attach_wall_forces() const {
+    for (const BodyIndex wall : walls) {
+      const bool sticks = std::any_of(no_slip_walls.begin(), no_slip_walls.end(),
+                                      [&](BodyIndex other) { return other.value == wall.value; });
+      Target target = b.target(wall, {body});
+      target.smoothing_kernel = itself().smoothing_kernel;
+      target.smoothing_length = itself().smoothing_length;
+      target.cutoff = itself().cutoff;
+      b.attach<WallForce>("fluid.wall_force", {SHOAL_SAMPLE, "forces"}, target,
+                          [&](auto& op) {
+                            op.reference_density = density;
+                            op.sound_speed = sound_speed;
+                            op.viscosity = sticks ? viscosity : 0.0;
+                            op.limiter = physics.dissipation_limiter;
+                          },
+                          SHOAL_OPERATOR_ON_DEMAND);
+    }
+  }
+};
+
+// The largest speed: given, or that of a fall through the fluid's height.
+double expected_speed(const Wcsph& physics, const Builder& b) {
+  if (physics.max_speed.is_set()) return physics.max_speed;
+  const Vector3 g = b.gravity();
+  const double magnitude = std::hypot(g[0], g[1], g[2]);
+  if (magnitude == 0.0)
+    throw CaseError("fluid.wcsph needs max_speed, the largest speed that the flow will reach (without gravity there is "
+                    "nothing to estimate it from), e.g. max_speed: 1 m/s");
+  return 2.0 * std::sqrt(magnitude * height(b, physics.bodies, g, magnitude));
+}
+
+}  // namespace
+
+void Wcsph::build(const Builder& b) {
+  b.loop("advection", {"shift", "density", "forces", "acoustic"});
+  b.loop("acoustic", at_acoustic, {"predict", "momentum", "kick", "continuity"});
+  b.renew_neighbours_in("advection");
+
+  std::vector<BodyIndex> no_slip_walls;
+  for (const BodyIndex wall : walls.value())
+    if (b.material<Wall>(wall, "fluid.wall")->slip.value() == "no_slip") no_slip_walls.push_back(wall);
+
+  const double speed = expected_speed(*this, b);
+  for (const BodyIndex body : bodies.value()) {
+    const auto eos = b.material_interface<shoal_equation_of_state>(body, SHOAL_EQUATION_OF_STATE,
+                                                                   SHOAL_EQUATION_OF_STATE_REVISION);
+    if (!eos)
+      throw CaseError(std::string("body '") + b.body(body).name +
+                      "' needs a material with an equation of state, e.g. material: {fluid.liquid: {density: 1000}}");
+    const double rho0 = eos.api->reference_density(eos.self);
+    const double c = eos.api->set_sound_speed(eos.self, 10.0 * speed);
+    const FluidBody fluid{b,   *this, body, walls, no_slip_walls, eos, rho0, eos.api->viscosity(eos.self),
+                          c,   speed};
+    b.body_moves(body);
+    b.guard(body, "density", 0.5 * rho0, 2.0 * rho0);
+    b.note(std::string(b.body(body).name) + ": sound speed " + number(c) + " m/s for an expected speed of " +
+           number(speed) + " m/s (Mach " + number(speed / c) + ")");
+    fluid.attach_initial();
+    fluid.attach_shift();
+    fluid.attach_density();
+    fluid.attach_forces();
+    fluid.attach_acoustic();
+    fluid.attach_wall_forces();
+  }
+}
+
+}  // namespace shoal::fluid
