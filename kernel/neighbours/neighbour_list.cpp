@@ -1,0 +1,303 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+#include "kernel/neighbours/neighbour_list.hpp"
+
+#include <tbb/parallel_pipeline.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <shared_mutex>
+#include <stdexcept>
+#include <vector>
+
+#include "kernel/neighbours/row_scan.hpp"
+#include "kernel/neighbours/threads.hpp"
+
+namespace shoal::kernel {
+
+namespace {
+
+constexpr std::size_t block_rows = 256;
+constexpr std::uint32_t no_particle = 0xFFFFFFFFu;
+
+// Writes rows one after another into a buffer that grows as needed.
+struct RowWriter {
+  AlignedBuffer<std::uint32_t>& buffer;
+  std::size_t used = 0;
+
+  std::uint32_t* room_for(std::size_t candidates) {
+    buffer.reserve(used + candidates + NeighbourList::padding + scan_overrun, used);
+    return buffer.data() + used;
+  }
+  /// Ends a row of `count` neighbours that stand at room_for().
+  void finish_row(std::size_t count) {
+    if (count == 0) return;
+    std::uint32_t* end = buffer.data() + used + count;
+    std::fill_n(end, NeighbourList::padding, end[-1]);
+    used += (count + NeighbourList::padding - 1) / NeighbourList::padding * NeighbourList::padding;
+  }
+};
+
+struct Run {
+  std::uint32_t begin, end;
+};
+
+// Finds the runs of sorted particles that may hold neighbours of a place.
+template <int D>
+class RunFinder {
+ public:
+  // A slow axis is cut into cells no narrower than the cut-off; with rounding, a place sees at most 4 of them.
+  static constexpr std::size_t max_runs = D == 2 ? 4 : 16;
+
+  RunFinder(const NeighbourGrid& grid, double cutoff)
+      : grid_(grid), start_(grid.cell_start()), margin_(grid.rounding()), reach_(cutoff + grid.rounding()) {}
+
+  /// Fills `runs` and returns their number. The margin covers the rounding of positions and cell numbers.
+  std::size_t find(const double* x, std::array<Run, max_runs>& runs) const {
+    const double fast = grid_.map(0).locate(x[grid_.axis(0)]);
+    const double left = reach_ * reach_;
+    std::size_t n = 0;
+    if constexpr (D == 2) {
+      for_rows(1, x, left, [&](std::int64_t row, double rest) { add(fast, row, rest, runs, n); });
+    } else {
+      const std::int64_t rows = grid_.map(1).cells();
+      for_rows(2, x, left, [&](std::int64_t slab, double rest_of_slab) {
+        for_rows(1, x, rest_of_slab, [&](std::int64_t row, double rest) {
+          add(fast, slab * rows + row, rest, runs, n);
+        });
+      });
+    }
+    return n;
+  }
+
+ private:
+  // visit(cell, rest) for the cells of a slow axis within reach; `rest` is the squared reach left beside them.
+  template <class Visit>
+  void for_rows(int rank, const double* x, double left, const Visit& visit) const {
+    const AxisMap& map = grid_.map(rank);
+    const double u = map.locate(x[grid_.axis(rank)]);
+    const double reach = reach_ * map.per_cell();
+    const auto first = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(u - reach)));
+    const auto last = std::min(map.cells() - 1, static_cast<std::int64_t>(std::floor(u + reach)));
+    for (std::int64_t cell = first; cell <= last; ++cell) {
+      const auto c = static_cast<double>(cell);
+      const double gap = std::max(0.0, std::max(c - u, u - (c + 1.0)) * map.cell_width() - margin_);
+      const double rest = left - gap * gap;
+      if (rest > 0.0) visit(cell, rest);
+    }
+  }
+
+  void add(double fast, std::int64_t row, double rest, std::array<Run, max_runs>& runs, std::size_t& n) const {
+    const AxisMap& map = grid_.map(0);
+    const double half = (std::sqrt(rest) + margin_) * map.per_cell();
+    const auto first = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(fast - half)));
+    const auto last = std::min(map.cells() - 1, static_cast<std::int64_t>(std::floor(fast + half)));
+    if (first > last) return;
+    const std::uint32_t* cells = start_ + row * map.cells();
+    const Run run{cells[first], cells[last + 1]};
+    runs[n] = run;
+    n += run.begin < run.end;
+  }
+
+  const NeighbourGrid& grid_;
+  const std::uint32_t* start_;
+  double margin_, reach_;
+};
+
+}  // namespace
+
+// What one task of the parallel build works on.
+struct NeighbourList::Block {
+  std::size_t first = 0, last = 0;
+  std::uint64_t base = 0, pairs = 0;
+  AlignedBuffer<std::uint32_t> rows;
+  std::size_t used = 0;
+};
+
+bool is_available(ScanPath path) {
+  switch (path) {
+    case ScanPath::fastest:
+    case ScanPath::plain:
+      return true;
+    case ScanPath::avx2:
+#if defined(__AVX2__)
+      return true;
+#else
+      return false;
+#endif
+    case ScanPath::avx512:
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+      return true;
+#else
+      return false;
+#endif
+  }
+  return false;
+}
+
+void NeighbourList::build(const NeighbourGrid& sources, Positions targets, double cutoff, bool same_body,
+                          ScanPath path) {
+  if (!(cutoff > 0.0) || cutoff > sources.cutoff())
+    throw std::invalid_argument("the cut-off of a neighbour list must be positive and not exceed its grid's");
+  if (targets.dimensions != sources.dimensions())
+    throw std::invalid_argument("the bodies of a neighbour list must have the same dimensions");
+  if (same_body && targets.n > sources.n())
+    throw std::invalid_argument("a body cannot have more targets than particles");
+  n_rows_ = targets.n;
+  cutoff_ = cutoff;
+  offsets_.reserve(n_rows_ + 1);
+  counts_.reserve(n_rows_);
+  const auto with = [&]<class Scan>(Scan) {
+    if (targets.dimensions == 2)
+      build_rows<2, Scan>(sources, targets, same_body);
+    else
+      build_rows<3, Scan>(sources, targets, same_body);
+  };
+  switch (path) {
+    case ScanPath::plain:
+      return with(PlainScan{});
+#if defined(__AVX2__)
+    case ScanPath::avx2:
+      return with(Avx2Scan{});
+#endif
+    case ScanPath::fastest:
+      return with(FastestScan{});
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+    case ScanPath::avx512:
+      return with(Avx512Scan{});
+#endif
+    default:
+      throw std::invalid_argument("this program was not compiled for the instructions asked for");
+  }
+}
+
+template <int D, class Scan>
+void NeighbourList::build_rows(const NeighbourGrid& sources, Positions targets, bool same_body) {
+  const RunFinder<D> finder(sources, cutoff_);
+  // Rows first ... last-1 into `writer`; offsets are counted from where the writer stands. Returns the pairs.
+  const auto fill_rows = [&](std::size_t first, std::size_t last, RowWriter& writer) {
+    RowTarget<D> target{};
+    target.squared_radius = cutoff_ * cutoff_;
+    target.order = sources.order();
+    for (int a = 0; a < D; ++a) target.sorted[a] = sources.sorted(a);
+    std::array<Run, RunFinder<D>::max_runs> runs;
+    std::uint64_t pairs = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      bool finite = true;
+      for (int a = 0; a < D; ++a) {
+        target.x[a] = targets.data[i * D + static_cast<std::size_t>(a)];
+        finite &= std::isfinite(target.x[a]);
+      }
+      target.self = same_body ? static_cast<std::uint32_t>(i) : no_particle;
+      const std::size_t n_runs = finite ? finder.find(target.x, runs) : 0;
+      std::size_t candidates = 0;
+      for (std::size_t k = 0; k < n_runs; ++k) candidates += runs[k].end - runs[k].begin;
+      std::uint32_t* const row = writer.room_for(candidates);
+      std::uint32_t* out = row;
+      for (std::size_t k = 0; k < n_runs; ++k) out = Scan::template run<D>(target, runs[k].begin, runs[k].end, out);
+      const auto count = static_cast<std::size_t>(out - row);
+      offsets_[i] = writer.used;
+      counts_[i] = static_cast<std::uint32_t>(count);
+      writer.finish_row(count);
+      pairs += count;
+    }
+    return pairs;
+  };
+  if (indices_.capacity() == 0) reserve_first(fill_rows);
+  if (use_threads(n_rows_))
+    build_parallel(fill_rows);
+  else
+    build_serial(fill_rows);
+}
+
+// Memory for the first build, from a sample of rows: growing step by step would copy the list several times.
+template <class FillRows>
+void NeighbourList::reserve_first(const FillRows& fill_rows) {
+  constexpr std::size_t samples = 128;
+  const std::size_t stride = n_rows_ / samples;
+  if (stride < 2) return;
+  std::size_t used = 0;
+  for (std::size_t k = 0; k < samples; ++k) {
+    RowWriter writer{sample_};
+    fill_rows(k * stride, k * stride + 1, writer);
+    used += writer.used;
+  }
+  indices_.reserve(static_cast<std::size_t>(1.05 * static_cast<double>(used * stride)) + padding);
+}
+
+template <class FillRows>
+void NeighbourList::build_serial(const FillRows& fill_rows) {
+  RowWriter writer{indices_};
+  n_pairs_ = fill_rows(0, n_rows_, writer);
+  offsets_[n_rows_] = writer.used;
+}
+
+// Blocks of rows are filled in any order into memory of their own, get their place in the order of the rows, and are
+// copied there: one pass, no gaps, and offsets that do not depend on the threads. The copy costs little, since a
+// block's rows are still in the cache of the core that made them.
+template <class FillRows>
+void NeighbourList::build_parallel(const FillRows& fill_rows) {
+  const std::size_t n_blocks = (n_rows_ + block_rows - 1) / block_rows;
+  std::vector<Block> blocks(4 * available_threads());
+  std::vector<Block*> idle;
+  for (Block& block : blocks) idle.push_back(&block);
+  std::mutex idle_mutex;
+  std::shared_mutex growth;
+  std::size_t next = 0;
+  std::uint64_t total = 0;
+  n_pairs_ = 0;
+
+  const auto hand_out = [&](tbb::flow_control& control) -> Block* {
+    if (next == n_blocks) {
+      control.stop();
+      return nullptr;
+    }
+    const std::lock_guard lock(idle_mutex);
+    Block* block = idle.back();
+    idle.pop_back();
+    block->first = next * block_rows;
+    block->last = std::min(n_rows_, block->first + block_rows);
+    ++next;
+    return block;
+  };
+  const auto fill = [&](Block* block) {
+    RowWriter writer{block->rows};
+    block->pairs = fill_rows(block->first, block->last, writer);
+    block->used = writer.used;
+    return block;
+  };
+  const auto give_place = [&](Block* block) {
+    block->base = total;
+    total += block->used;
+    n_pairs_ += block->pairs;
+    if (total > indices_.capacity()) {
+      const std::unique_lock lock(growth);
+      indices_.reserve(total, block->base);
+    }
+    return block;
+  };
+  const auto copy = [&](Block* block) {
+    {
+      const std::shared_lock lock(growth);
+      std::copy_n(block->rows.data(), block->used, indices_.data() + block->base);
+    }
+    for (std::size_t i = block->first; i < block->last; ++i) offsets_[i] += block->base;
+    const std::lock_guard lock(idle_mutex);
+    idle.push_back(block);
+  };
+  using tbb::filter_mode;
+  tbb::parallel_pipeline(blocks.size(),
+                         tbb::make_filter<void, Block*>(filter_mode::serial_in_order, hand_out) &
+                             tbb::make_filter<Block*, Block*>(filter_mode::parallel, fill) &
+                             tbb::make_filter<Block*, Block*>(filter_mode::serial_in_order, give_place) &
+                             tbb::make_filter<Block*, void>(filter_mode::parallel, copy));
+  offsets_[n_rows_] = total;
+}
+
+std::size_t NeighbourList::memory_bytes() const {
+  return offsets_.memory_bytes() + counts_.memory_bytes() + indices_.memory_bytes() + sample_.memory_bytes();
+}
+
+}  // namespace shoal::kernel
