@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Pressure force and divergence against the formulas of the paper in plain double loops, their conservation laws,
+// and walls: a fluid at rest next to a wall must feel what it would feel inside the fluid.
+#include "riemann.hpp"
+
+#include <doctest/doctest.h>
+
+#include "particles.hpp"
+#include "wall.hpp"
+
+using namespace shoal;
+using namespace shoal::fluid;
+using namespace shoal::fluid::test;
+
+namespace {
+
+constexpr double rho0 = 1000.0, c = 12.0;
+
+Body disordered(int dimensions, double dx) {
+  Body body(dimensions, dimensions == 2 ? lattice(2, dx, {0, 0}, {1, 1}, 0.25)
+                                        : lattice(3, dx, {0, 0, 0}, {0.6, 0.6, 0.6}, 0.25));
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto d = static_cast<std::size_t>(dimensions);
+  body.set_each("velocity", d, [&](auto, auto) { return uniform(random); });
+  body.set_each("pressure", 1, [&](auto, auto) { return 500.0 * uniform(random); });
+  body.set_each("density", 1, [&](auto, auto) { return rho0 * (1.0 + 0.01 * uniform(random)); });
+  body.set_each("acceleration", d, [&](auto, auto a) { return a == 1 ? -9.81 : 0.0; });
+  const double mass = rho0 * std::pow(dx, dimensions);
+  auto& density = body["density"];
+  body.set_each("volume", 1, [&](auto i, auto) { return mass / density[i]; });
+  return body;
+}
+
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
+}
+
+void check_equal(const std::vector<double>& got, const std::vector<double>& wanted, double relative) {
+  REQUIRE(got.size() == wanted.size());
+  const double scale = largest(wanted);
+  REQUIRE(scale > 0);
+  for (std::size_t k = 0; k < got.size(); ++k) {
+    CAPTURE(k);
+    REQUIRE(std::abs(got[k] - wanted[k]) <= relative * scale);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("pressure force and its dissipation equal the paper's sums") {
+  for (const int dimensions : {2, 3})
+    for (const bool scalar : {false, true}) {
+      CAPTURE(dimensions);
+      CAPTURE(scalar);
+      const double dx = 0.1, h = 1.3 * dx;
+      const auto d = static_cast<std::size_t>(dimensions);
+      Body body = disordered(dimensions, dx);
+      std::vector<double> force(body.size() * d, 0.0), rate(body.size(), 0.0);
+      for_all_pairs(body, body, 2 * h, [&](auto i, auto j, double r, const auto& e) {
+        const double v = body["volume"][j], dw = plain_dw(dimensions, h, r);
+        const double mean = 0.5 * (body["pressure"][i] + body["pressure"][j]);
+        double at_rest = 0;
+        for (std::size_t a = 0; a < d; ++a) {
+          force[i * d + a] -= 2.0 / body["density"][i] * v * mean * dw * e[a];
+          at_rest += rho0 * body["acceleration"][i * d + a] * e[a] * r;
+        }
+        rate[i] += v * (body["pressure"][i] - body["pressure"][j] - at_rest) / c * dw;
+      });
+
+      PressureForce op;
+      op.reference_density = rho0;
+      op.sound_speed = c;
+      testing::run(op, body, {&body}, {.smoothing_length = h, .scalar = scalar});
+      check_equal(body["pressure_acceleration"], force, 1e-13);
+      check_equal(body["density_rate"], rate, 1e-13);
+    }
+}
+
+TEST_CASE("divergence and its dissipation equal the paper's sums") {
+  for (const int dimensions : {2, 3})
+    for (const bool scalar : {false, true}) {
+      CAPTURE(dimensions);
+      CAPTURE(scalar);
+      const double dx = 0.1, h = 1.3 * dx;
+      const auto d = static_cast<std::size_t>(dimensions);
+      Body body = disordered(dimensions, dx);
+      std::vector<double> force(body.size() * d, 0.0), rate(body.size(), 0.0);
+      for_all_pairs(body, body, 2 * h, [&](auto i, auto j, double r, const auto& e) {
+        const double v = body["volume"][j], dw = plain_dw(dimensions, h, r);
+        double approach = 0;
+        for (std::size_t a = 0; a < d; ++a)
+          approach -= (body["velocity"][i * d + a] - body["velocity"][j * d + a]) * e[a];
+        const double beta = std::min(3.0 * std::max(approach, 0.0) / c, 1.0);
+        for (std::size_t a = 0; a < d; ++a) force[i * d + a] -= v * c * beta * approach * dw * e[a];
+        rate[i] -= body["density"][i] * v * approach * dw;
+      });
+
+      VelocityDivergence op;
+      op.sound_speed = c;
+      testing::run(op, body, {&body}, {.smoothing_length = h, .scalar = scalar});
+      check_equal(body["pressure_acceleration"], force, 1e-13);
+      check_equal(body["density_rate"], rate, 1e-13);
+    }
+}
+
+TEST_CASE("pressure conserves momentum and angular momentum to rounding") {
+  for (const int dimensions : {2, 3}) {
+    const double dx = 0.1, h = 1.3 * dx;
+    const auto d = static_cast<std::size_t>(dimensions);
+    Body body = disordered(dimensions, dx);
+    PressureForce op;
+    op.reference_density = rho0;
+    op.sound_speed = c;
+    testing::run(op, body, {&body}, {.smoothing_length = h});
+    std::vector<double> total(d, 0.0);
+    double torque = 0, size = 0;
+    for (std::size_t i = 0; i < body.size(); ++i) {
+      const double m = body["volume"][i] * body["density"][i];
+      const double* a = &body["pressure_acceleration"][i * d];
+      const double* x = &body["position"][i * d];
+      for (std::size_t k = 0; k < d; ++k) total[k] += m * a[k], size += std::abs(m * a[k]);
+      torque += m * (x[0] * a[1] - x[1] * a[0]);
+    }
+    for (const double sum : total) CHECK(std::abs(sum) < 1e-13 * size);
+    CHECK(std::abs(torque) < 1e-13 * size);
+  }
+}
+
+namespace {
+
+// Water in a corner of two walls, at rest under gravity: the exact hydrostatic pressure on a lattice.
+struct Corner {
+  double dx = 0.05, h = 1.3 * 0.05, g = 9.81, depth = 1.0;
+  Body water, walls, ocean;
+
+  // `ocean` is the water with the walls' particles turned into water: what the water should feel.
+  Corner() : water(2, lattice(2, dx, {0, 0}, {1, 1})), walls(2, wall_points()), ocean(2, ocean_points()) {
+    for (Body* body : {&water, &walls, &ocean}) {
+      body->set("volume", dx * dx);
+      body->set_each("velocity", 2, [](auto, auto) { return 0.0; });
+    }
+    for (Body* body : {&water, &ocean}) {
+      body->set("density", rho0);
+      body->set_each("acceleration", 2, [&](auto, auto a) { return a == 1 ? -g : 0.0; });
+      auto& x = (*body)["position"];
+      body->set_each("pressure", 1, [&](auto i, auto) { return rho0 * g * (depth - x[2 * i + 1]); });
+    }
+    auto& x = walls["position"];
+    walls.set_each("normal", 2, [&](auto i, auto a) {
+      const bool floor = x[2 * i + 1] < x[2 * i];
+      return floor == (a == 1) ? 1.0 : 0.0;
+    });
+    walls.set_each("signed_distance", 1, [&](auto i, auto) { return std::min(x[2 * i], x[2 * i + 1]); });
+  }
+  std::vector<double> wall_points() const {
+    std::vector<double> points = lattice(2, dx, {-0.2, -0.2}, {1, 0});
+    for (const double x : lattice(2, dx, {-0.2, 0}, {0, 1})) points.push_back(x);
+    return points;
+  }
+  std::vector<double> ocean_points() const {
+    std::vector<double> points = lattice(2, dx, {0, 0}, {1, 1});
+    for (const double x : wall_points()) points.push_back(x);
+    return points;
+  }
+  // Away from the outer sides of the block, which have no walls.
+  bool supported(std::size_t i) const {
+    return water_x(i, 0) < 1 - 2 * h && water_x(i, 1) < 1 - 2 * h;
+  }
+  double water_x(std::size_t i, std::size_t a) const { return const_cast<Corner*>(this)->water["position"][2 * i + a]; }
+};
+
+}  // namespace
+
+TEST_CASE("water at rest feels walls, corners too, as it would feel more water") {
+  Corner corner;
+  PressureForce inner;
+  inner.reference_density = rho0;
+  inner.sound_speed = c;
+  WallPressureForce wall;
+  wall.reference_density = rho0;
+  testing::run(inner, corner.water, {&corner.water}, {.smoothing_length = corner.h});
+  testing::run(wall, corner.water, {&corner.walls}, {.smoothing_length = corner.h});
+  testing::run(inner, corner.ocean, {&corner.ocean}, {.smoothing_length = corner.h});
+  // What the sum over a lattice makes of the slope of a linear field: exact in the limit of many neighbours.
+  double slope = 0;
+  for (int a = -4; a <= 4; ++a)
+    for (int b = -4; b <= 4; ++b) {
+      const double r = corner.dx * std::sqrt(double(a * a + b * b));
+      if (r > 0) slope -= corner.dx * corner.dx * plain_dw(2, corner.h, r) * (a * corner.dx) * (a * corner.dx) / r;
+    }
+  CHECK(slope == doctest::Approx(1.0).epsilon(0.03));
+  for (std::size_t i = 0; i < corner.water.size(); ++i) {
+    if (!corner.supported(i)) continue;
+    CAPTURE(i);
+    CHECK(corner.water["pressure_acceleration"][2 * i] == doctest::Approx(0.0).epsilon(1).scale(1e-9));
+    CHECK(corner.water["pressure_acceleration"][2 * i + 1] ==
+          doctest::Approx(corner.ocean["pressure_acceleration"][2 * i + 1]).epsilon(1e-10));
+    CHECK(corner.water["pressure_acceleration"][2 * i + 1] == doctest::Approx(corner.g * slope).epsilon(1e-10));
+    CHECK(std::abs(corner.water["density_rate"][i]) < 1e-9 * rho0);
+  }
+}
+
+TEST_CASE("a wall does not pull") {
+  Body drop(2, {0.0, 0.02});
+  drop.set("density", rho0);
+  drop.set("pressure", 1.0);
+  drop.set_each("acceleration", 2, [](auto, auto a) { return a == 1 ? 50.0 : 0.0; });  // away from the wall
+  Body wall(2, lattice(2, 0.05, {-0.3, -0.3}, {0.3, 0.0}));
+  wall.set("volume", 0.05 * 0.05);
+  WallPressureForce op;
+  op.reference_density = rho0;
+  testing::run(op, drop, {&wall}, {.smoothing_length = 0.065});
+  CHECK(drop["pressure_acceleration"][1] > 0.0);
+}
+
+TEST_CASE("the force on a wall is the opposite of what the wall does to the fluid") {
+  Corner corner;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  corner.water.set_each("velocity", 2, [&](auto, auto) { return uniform(random); });
+  const double eta = 5.0, mass = rho0 * corner.dx * corner.dx;
+
+  WallPressureForce pressure;
+  pressure.reference_density = rho0;
+  WallVelocityDivergence impact;
+  impact.sound_speed = c;
+  WallViscousForce viscous;
+  viscous.viscosity = eta;
+  corner.water.set_each("density_rate", 1, [](auto, auto) { return 0.0; });
+  testing::run(impact, corner.water, {&corner.walls}, {.smoothing_length = corner.h});
+  testing::run(pressure, corner.water, {&corner.walls}, {.smoothing_length = corner.h});
+  auto gravity = corner.water["acceleration"];
+  corner.water.set_each("acceleration", 2, [](auto, auto) { return 0.0; });
+  testing::run(viscous, corner.water, {&corner.walls}, {.smoothing_length = corner.h});
+  std::vector<double> on_fluid(2, 0.0);
+  for (std::size_t i = 0; i < corner.water.size(); ++i)
+    for (std::size_t a = 0; a < 2; ++a)
+      on_fluid[a] += mass * (corner.water["pressure_acceleration"][2 * i + a] + corner.water["acceleration"][2 * i + a]);
+
+  corner.water["acceleration"] = gravity;
+  WallForce force;
+  force.reference_density = rho0;
+  force.sound_speed = c;
+  force.viscosity = eta;
+  testing::run(force, corner.walls, {&corner.water}, {.smoothing_length = corner.h});
+  std::vector<double> on_wall(2, 0.0);
+  for (std::size_t j = 0; j < corner.walls.size(); ++j)
+    for (std::size_t a = 0; a < 2; ++a) on_wall[a] += corner.walls["force"][2 * j + a];
+  for (std::size_t a = 0; a < 2; ++a) {
+    CHECK(std::abs(on_fluid[a]) > 100.0);
+    CHECK(on_wall[a] == doctest::Approx(-on_fluid[a]).epsilon(1e-12));
+  }
+}
