@@ -17,66 +17,114 @@ namespace shoal::vtk {
 namespace {
 
 std::string describe(const std::filesystem::path& file, int system_error) {
-  std::string text = "cannot write '" + file.string() + "'";
-  if (system_error != 0) text += ": " + std::system_category().message(system_error);
-  return text + "; the pictures written before are complete";
+  return "cannot write '" + file.string() + "': " + std::system_category().message(system_error) +
+         "; the pictures written before are complete";
 }
 
-// A file descriptor that is closed with its scope.
-class Descriptor {
- public:
-  Descriptor(const std::filesystem::path& path, int flags) : value_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
-  ~Descriptor() {
-    if (value_ >= 0) ::close(value_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  bool is_open() const { return value_ >= 0; }
-  int get() const { return value_; }
-  // False if the system reports only now that data did not reach the disk (network file systems do).
-  bool close() { return ::close(std::exchange(value_, -1)) == 0; }
-
- private:
-  int value_;
-};
-
 // Some file systems do not offer fsync; there is nothing better to do then.
-bool synchronise(const Descriptor& file) { return ::fsync(file.get()) == 0 || errno == EINVAL || errno == ENOTSUP; }
+bool synchronise(int file) { return ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP; }
+
+// A renamed file is there after a power failure only if its folder is on the disk.
+bool synchronise_folder_of(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool done = synchronise(descriptor);
+  const int error = errno;
+  ::close(descriptor);
+  errno = error;
+  return done;
+}
 
 }  // namespace
 
 WriteFailed::WriteFailed(const std::filesystem::path& file, int system_error)
     : std::runtime_error(describe(file, system_error)) {}
 
+FileBuffer::FileBuffer(const std::filesystem::path& file)
+    : file_(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)), buffer_(1 << 18) {
+  setp(buffer_.data(), buffer_.data() + buffer_.size());
+  if (file_ < 0) fail();
+}
+
+FileBuffer::~FileBuffer() {
+  if (file_ >= 0) ::close(file_);
+}
+
+bool FileBuffer::fail() {
+  if (error_ == 0) error_ = errno;
+  return false;
+}
+
+bool FileBuffer::flush() {
+  if (error_ != 0) return false;
+  for (const char* begin = pbase(); begin != pptr();) {
+    const ssize_t written = ::write(file_, begin, static_cast<std::size_t>(pptr() - begin));
+    if (written >= 0)
+      begin += written;
+    else if (errno != EINTR)
+      return fail();
+  }
+  setp(buffer_.data(), buffer_.data() + buffer_.size());
+  return true;
+}
+
+bool FileBuffer::finish() {
+  if (!flush()) return false;
+  const bool synchronised = synchronise(file_) || fail();
+  // Network file systems may report only now that data did not arrive.
+  const bool closed = ::close(std::exchange(file_, -1)) == 0 || fail();
+  return synchronised && closed;
+}
+
+FileBuffer::int_type FileBuffer::overflow(int_type character) {
+  if (!flush()) return traits_type::eof();
+  if (!traits_type::eq_int_type(character, traits_type::eof())) sputc(traits_type::to_char_type(character));
+  return traits_type::not_eof(character);
+}
+
+int FileBuffer::sync() { return flush() ? 0 : -1; }
+
+FileBuffer::pos_type FileBuffer::seekoff(off_type offset, std::ios_base::seekdir from,
+                                         std::ios_base::openmode) {
+  const int whence = from == std::ios_base::beg ? SEEK_SET : from == std::ios_base::cur ? SEEK_CUR : SEEK_END;
+  if (!flush()) return pos_type(off_type(-1));
+  const off_t position = ::lseek(file_, offset, whence);
+  if (position < 0) fail();
+  return pos_type(position);
+}
+
+FileBuffer::pos_type FileBuffer::seekpos(pos_type position, std::ios_base::openmode which) {
+  return seekoff(off_type(position), std::ios_base::beg, which);
+}
+
 AtomicFile::AtomicFile(std::filesystem::path target, const std::string& temporary_name)
-    : target_(std::move(target)), temporary_(target_.parent_path() / temporary_name) {}
+    : target_(std::move(target)),
+      temporary_(target_.parent_path() / temporary_name),
+      buffer_(temporary_),
+      stream_(&buffer_) {
+  check();
+}
 
 AtomicFile::~AtomicFile() {
   if (!committed_) ::unlink(temporary_.c_str());
 }
 
+void AtomicFile::check() const {
+  if (buffer_.error() != 0) throw WriteFailed(target_, buffer_.error());
+}
+
 void AtomicFile::commit() {
-  Descriptor file(temporary_, O_RDONLY);
-  if (!file.is_open() || !synchronise(file)) throw WriteFailed(target_, errno);
+  if (!buffer_.finish()) throw WriteFailed(target_, buffer_.error());
   if (std::rename(temporary_.c_str(), target_.c_str()) != 0) throw WriteFailed(target_, errno);
   committed_ = true;
-  const Descriptor folder(target_.has_parent_path() ? target_.parent_path() : ".", O_RDONLY | O_DIRECTORY);
-  if (!folder.is_open() || !synchronise(folder)) throw WriteFailed(target_, errno);
+  if (!synchronise_folder_of(target_)) throw WriteFailed(target_, errno);
 }
 
 void write_atomically(const std::filesystem::path& target, const std::string& temporary_name,
                       std::string_view content) {
   AtomicFile file(target, temporary_name);
-  Descriptor out(file.temporary(), O_WRONLY | O_CREAT | O_TRUNC);
-  if (!out.is_open()) throw WriteFailed(target, errno);
-  while (!content.empty()) {
-    const ssize_t written = ::write(out.get(), content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw WriteFailed(target, errno);
-    content.remove_prefix(static_cast<std::size_t>(written));
-  }
-  if (!out.close()) throw WriteFailed(target, errno);
+  file.stream() << content;
   file.commit();
 }
 

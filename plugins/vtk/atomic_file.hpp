@@ -6,9 +6,12 @@
 #pragma once
 
 #include <filesystem>
+#include <ostream>
 #include <stdexcept>
+#include <streambuf>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace shoal::vtk {
 
@@ -17,24 +20,56 @@ struct WriteFailed : std::runtime_error {
   WriteFailed(const std::filesystem::path& file, int system_error);
 };
 
+// std::filebuf, but one that knows why it failed, and whose file can be synchronised with the disk.
+class FileBuffer final : public std::streambuf {
+ public:
+  explicit FileBuffer(const std::filesystem::path& file);  // made anew; see error()
+  ~FileBuffer() override;
+  FileBuffer(const FileBuffer&) = delete;
+  FileBuffer& operator=(const FileBuffer&) = delete;
+
+  // errno of the first failure, or 0.
+  int error() const { return error_; }
+  // Waits until all is on the disk, and closes. Without it the destructor closes, and drops what is buffered.
+  bool finish();
+
+ protected:
+  int_type overflow(int_type character) override;
+  int sync() override;
+  pos_type seekoff(off_type offset, std::ios_base::seekdir from, std::ios_base::openmode which) override;
+  pos_type seekpos(pos_type position, std::ios_base::openmode which) override;
+
+ private:
+  bool flush();
+  bool fail();
+
+  int file_;
+  int error_ = 0;
+  std::vector<char> buffer_;
+};
+
 class AtomicFile {
  public:
-  // The content goes to `temporary`, a hidden file in the target's folder. It should be the same for all files of a
-  // series: then what a killed run left is overwritten by the next one.
+  // The content goes to `temporary_name`, a hidden file in the target's folder. It should be the same for all files
+  // of a series: then what a killed run left is overwritten by the next one. Throws WriteFailed.
   AtomicFile(std::filesystem::path target, const std::string& temporary_name);
+  // Without commit, the temporary file is removed and the target stays as it was.
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  const std::filesystem::path& target() const { return target_; }
-  const std::filesystem::path& temporary() const { return temporary_; }
+  std::ostream& stream() { return stream_; }
 
-  // To be called after the temporary file was written and closed. Waits for the disk.
+  // Throws WriteFailed if anything failed since the beginning.
+  void check() const;
+  // Waits for the disk, then puts the file in place. Throws WriteFailed as check() does.
   void commit();
 
  private:
   std::filesystem::path target_;
   std::filesystem::path temporary_;
+  FileBuffer buffer_;
+  std::ostream stream_;
   bool committed_ = false;
 };
 

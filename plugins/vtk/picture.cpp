@@ -59,14 +59,16 @@ Layout make_layout(std::uint32_t rank, int d) {
     // VTK's order; the field holds the upper triangle row by row.
     constexpr std::array<std::array<int, 2>, 6> order{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}};
     for (const auto& [a, b] : order)
-      add_component(layout, matrix_names[static_cast<std::size_t>(3 * a + b)], b < d, a * d - a * (a - 1) / 2 + b - a);
+      add_component(layout, matrix_names[static_cast<std::size_t>(3 * a + b)], b < d,
+                    a * d - a * (a - 1) / 2 + b - a);
   } else if (rank == SHOAL_RANK_MATRIX) {
     layout.field_components = d * d;
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)
         add_component(layout, matrix_names[static_cast<std::size_t>(3 * a + b)], a < d && b < d, a * d + b);
   } else {
-    throw std::invalid_argument("fields of rank " + std::to_string(rank) + " are not known to the vtk plugin");
+    throw std::invalid_argument("fields of rank " + std::to_string(rank) +
+                                " are not known to the vtk plugin");
   }
   return layout;
 }
@@ -79,7 +81,8 @@ vtkSmartPointer<vtkDataArray> copy(const Layout& layout, std::uint64_t n, const 
   array->SetNumberOfComponents(components);
   array->SetNumberOfTuples(static_cast<vtkIdType>(n));
   if (components > 1)
-    for (int c = 0; c < components; ++c) array->SetComponentName(c, layout.names[static_cast<std::size_t>(c)]);
+    for (int c = 0; c < components; ++c)
+      array->SetComponentName(c, layout.names[static_cast<std::size_t>(c)]);
   Out* out = array->GetPointer(0);
   for (std::uint64_t i = 0; i < n; ++i, in += layout.field_components)
     for (int c = 0; c < components; ++c) {
@@ -92,7 +95,8 @@ vtkSmartPointer<vtkDataArray> copy(const Layout& layout, std::uint64_t n, const 
 vtkSmartPointer<vtkDataArray> copy_reals(const Layout& layout, std::uint64_t n, const void* data,
                                          Precision precision) {
   const auto* in = static_cast<const double*>(data);
-  return precision == Precision::single ? copy<vtkFloatArray>(layout, n, in) : copy<vtkDoubleArray>(layout, n, in);
+  return precision == Precision::single ? copy<vtkFloatArray>(layout, n, in)
+                                        : copy<vtkDoubleArray>(layout, n, in);
 }
 
 vtkSmartPointer<vtkDataArray> copy_integers(const Layout& layout, std::uint64_t n, const void* data) {
@@ -104,8 +108,8 @@ vtkSmartPointer<vtkDataArray> make_array(const shoal_snapshot_body& body, const 
   const Layout layout = make_layout(field.rank, dimensions);
   const std::string place = std::string("field '") + field.name + "' of body '" + body.name + "'";
   if (static_cast<int>(field.components) != layout.field_components)
-    throw std::invalid_argument(place + " has " + std::to_string(field.components) + " components instead of " +
-                                std::to_string(layout.field_components));
+    throw std::invalid_argument(place + " has " + std::to_string(field.components) +
+                                " components instead of " + std::to_string(layout.field_components));
   if (body.n_particles > 0 && !field.data) throw std::invalid_argument(place + " has no data");
   auto array = field.data_type == SHOAL_INT64 ? copy_integers(layout, body.n_particles, field.data)
                                               : copy_reals(layout, body.n_particles, field.data, precision);
@@ -121,7 +125,8 @@ vtkSmartPointer<vtkCellArray> make_vertices(std::uint64_t n) {
     using Value = typename Array::ValueType;
     offsets->SetNumberOfValues(static_cast<vtkIdType>(n + 1));
     points->SetNumberOfValues(static_cast<vtkIdType>(n));
-    for (std::uint64_t i = 0; i <= n; ++i) offsets->SetValue(static_cast<vtkIdType>(i), static_cast<Value>(i));
+    for (std::uint64_t i = 0; i <= n; ++i)
+      offsets->SetValue(static_cast<vtkIdType>(i), static_cast<Value>(i));
     for (std::uint64_t i = 0; i < n; ++i) points->SetValue(static_cast<vtkIdType>(i), static_cast<Value>(i));
     vertices->SetData(offsets, points);
   };

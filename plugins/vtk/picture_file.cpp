@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Shoal authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Sets up VTK's writer; the only own part is how zlib is driven.
+// Sets up VTK's writer; own parts are how zlib is driven, and the stream, which knows why it failed.
 #include "picture_file.hpp"
 
 #include <vtkErrorCode.h>
@@ -12,6 +12,8 @@
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkZLibDataCompressor.h>
 #include <zlib.h>
+
+#include <stdexcept>
 
 #include "atomic_file.hpp"
 #include "vtk_setup.hpp"
@@ -45,6 +47,13 @@ class RunLengthZLib final : public vtkZLibDataCompressor {
   }
 };
 
+// The writer offers only files by name to the public.
+class StreamWriter final : public vtkXMLPolyDataWriter {
+ public:
+  static StreamWriter* New() { VTK_STANDARD_NEW_BODY(StreamWriter); }
+  void SetStream(std::ostream* stream) { Stream = stream; }
+};
+
 void choose_compressor(vtkXMLWriter* writer, Compression compression) {
   if (compression == Compression::none) {
     writer->SetCompressor(nullptr);
@@ -60,24 +69,22 @@ void choose_compressor(vtkXMLWriter* writer, Compression compression) {
 
 }  // namespace
 
-void write_picture(vtkPolyData* picture, const std::filesystem::path& target, const std::string& temporary_name,
-                   Compression compression) {
+void write_picture(vtkPolyData* picture, const std::filesystem::path& target,
+                   const std::string& temporary_name, Compression compression) {
   set_up_vtk();
   AtomicFile file(target, temporary_name);
-  const vtkNew<vtkXMLPolyDataWriter> writer;
+  const vtkNew<StreamWriter> writer;
   writer->SetInputData(picture);
-  writer->SetFileName(file.temporary().c_str());
+  writer->SetStream(&file.stream());
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
   writer->SetHeaderTypeToUInt64();
   choose_compressor(writer, compression);
-  const bool complete = writer->Write() == 1;
-  const unsigned long error = writer->GetErrorCode();
-  if (!complete || error != vtkErrorCode::NoError) {
-    // Codes below VTK's own are those of the system.
-    const bool of_system = error > 0 && error < vtkErrorCode::FirstVTKErrorCode;
-    throw WriteFailed(target, of_system ? static_cast<int>(error) : 0);
-  }
+  const bool complete = writer->Write() == 1 && writer->GetErrorCode() == vtkErrorCode::NoError;
+  file.check();
+  if (!complete)
+    throw std::runtime_error("VTK cannot write '" + target.string() +
+                             "': " + vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode()));
   file.commit();
 }
 

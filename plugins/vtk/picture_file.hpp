@@ -22,7 +22,7 @@ namespace shoal::vtk {
 enum class Compression { fast, small, none };
 
 // Atomic: the file is complete or not there. Throws WriteFailed.
-void write_picture(vtkPolyData* picture, const std::filesystem::path& target, const std::string& temporary_name,
-                   Compression compression);
+void write_picture(vtkPolyData* picture, const std::filesystem::path& target,
+                   const std::string& temporary_name, Compression compression);
 
 }  // namespace shoal::vtk

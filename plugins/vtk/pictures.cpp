@@ -20,16 +20,19 @@ namespace {
 
 void check_file_name(const std::string& body) {
   if (body.empty() || body.front() == '.' || body.find('/') != std::string::npos)
-    throw std::invalid_argument("the name of body '" + body +
-                                "' cannot be the name of its pictures: it must not be empty, begin with '.' or "
-                                "contain '/'");
+    throw std::invalid_argument(
+        "the name of body '" + body +
+        "' cannot be the name of its pictures: it must not be empty, begin with '.' or "
+        "contain '/'");
 }
 
 }  // namespace
 
 Pictures::Pictures(std::filesystem::path folder, std::uint64_t resumed_sequence, Precision precision,
                    Compression compression)
-    : folder_(std::move(folder)), resumed_sequence_(resumed_sequence), precision_(precision),
+    : folder_(std::move(folder)),
+      resumed_sequence_(resumed_sequence),
+      precision_(precision),
       compression_(compression) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
@@ -49,7 +52,8 @@ void Pictures::write(const shoal_snapshot& snapshot, const shoal_snapshot_body& 
     series = series_.emplace(name, TimeSeries(folder_, name, resumed_sequence_)).first;
   }
   const auto picture = make_picture(body, snapshot.dimensions, snapshot.time, precision_);
-  write_picture(picture, folder_ / picture_name(name, snapshot.sequence), "." + name + ".vtp.tmp", compression_);
+  write_picture(picture, folder_ / picture_name(name, snapshot.sequence), "." + name + ".vtp.tmp",
+                compression_);
   series->second.add(snapshot.sequence, snapshot.time);
   if (first) series->second.remove_forgotten();
 }

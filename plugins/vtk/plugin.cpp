@@ -22,14 +22,22 @@ class VtkOutput final : public Output {
   void write(const shoal_snapshot& snapshot) override { pictures_->write(snapshot); }
 
  private:
-  Param<Choice> precision{"precision", nullptr,
-                          "Numbers of 4 bytes (single), which is enough for pictures, or of 8 bytes (double), the "
-                          "precision of the computation.",
-                          one_of("single", "double"), default_to("single"), example("double")};
-  Param<Choice> compression{"compression", nullptr,
-                            "fast: a third smaller at little cost; small: a fifth smaller than fast, but ten times "
-                            "as slow; none: for programs that cannot read compressed files.",
-                            one_of("fast", "small", "none"), default_to("fast"), example("small")};
+  Param<Choice> precision{
+      "precision",
+      nullptr,
+      "Numbers of 4 bytes (single), which is enough for pictures, or of 8 bytes (double), the "
+      "precision of the computation.",
+      one_of("single", "double"),
+      default_to("single"),
+      example("double")};
+  Param<Choice> compression{
+      "compression",
+      nullptr,
+      "fast: a third smaller at little cost; small: a fifth smaller than fast, but ten times "
+      "as slow; none: for programs that cannot read compressed files.",
+      one_of("fast", "small", "none"),
+      default_to("fast"),
+      example("small")};
 
   std::optional<Pictures> pictures_;
 };
@@ -38,7 +46,8 @@ class VtkOutput final : public Output {
 
 SHOAL_PLUGIN(vtk, SHOAL_SDK_VERSION) {
   summary("Pictures of the particles for ParaView and other programs that read VTK files.");
-  add<shoal::vtk::VtkOutput>("vtk",
-                             "Writes the particles of each body as VTP files, and a PVD file per body that lists "
-                             "them with their times; open the latter in ParaView.");
+  add<shoal::vtk::VtkOutput>(
+      "vtk",
+      "Writes the particles of each body as VTP files, and a PVD file per body that lists "
+      "them with their times; open the latter in ParaView.");
 }

@@ -77,7 +77,8 @@ void TimeSeries::read(std::uint64_t resumed_sequence) {
   const std::filesystem::path file = folder_ / (body_ + ".pvd");
   if (!std::filesystem::exists(file)) return;
   set_up_vtk();
-  const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(file.c_str()));
+  const auto root =
+      vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(file.c_str()));
   auto* collection = root ? root->FindNestedElementWithName("Collection") : nullptr;
   if (!collection)
     throw std::runtime_error("cannot continue the list of pictures '" + file.string() +
@@ -87,7 +88,8 @@ void TimeSeries::read(std::uint64_t resumed_sequence) {
     const char* name = entry->GetAttribute("file");
     const char* time = entry->GetAttribute("timestep");
     const auto sequence = name && time ? sequence_of(name, body_) : std::nullopt;
-    if (sequence && *sequence < resumed_sequence && std::filesystem::exists(folder_ / name)) times_[*sequence] = time;
+    if (sequence && *sequence < resumed_sequence && std::filesystem::exists(folder_ / name))
+      times_[*sequence] = time;
   }
 }
 
@@ -106,10 +108,11 @@ void TimeSeries::add(std::uint64_t sequence, double time) {
 
 void TimeSeries::remove_forgotten() const {
   std::error_code ignored;  // a leftover that stays does no harm to what is listed
-  for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored)) {
-    const auto sequence = sequence_of(entry.path().filename().string(), body_);
+  std::filesystem::directory_iterator entry(folder_, ignored);
+  for (; entry != std::filesystem::directory_iterator(); entry.increment(ignored)) {
+    const auto sequence = sequence_of(entry->path().filename().string(), body_);
     if (sequence && *sequence >= resumed_sequence_ && !times_.contains(*sequence))
-      std::filesystem::remove(entry.path(), ignored);
+      std::filesystem::remove(entry->path(), ignored);
   }
 }
 

@@ -32,9 +32,10 @@ class Output : public Parameterised {
   static constexpr shoal_type_kind type_kind = SHOAL_TYPE_OUTPUT;
 
   struct Run {
-    std::filesystem::path folder;         // where this output's files belong
-    std::string title;                    // of the case
-    std::uint64_t resumed_sequence = 0;   // number of the next snapshot; files of it and later ones are to be forgotten
+    std::filesystem::path folder;  // where this output's files belong
+    std::string title;             // of the case
+    std::uint64_t resumed_sequence =
+        0;  // number of the next snapshot; files of it and later ones are to be forgotten
   };
 
   virtual ~Output() = default;
@@ -67,10 +68,12 @@ class Output : public Parameterised {
 
  protected:
   // The kernel acts on these four: it decides when `write` is called, and what is in the snapshot.
-  Param<double> every{"every", "s", "Time between two snapshots, the first of which is the initial state.", positive,
-                      optional, example("50 ms")};
-  Param<std::vector<double>> at{"at", "s", "Single times at which to write, beside those of `every`.", non_negative,
-                                optional, example("[0.1 s, 0.25 s]")};
+  Param<double> every{
+      "every",  "s",      "Time between two snapshots, the first of which is the initial state.",
+      positive, optional, example("50 ms")};
+  Param<std::vector<double>> at{
+      "at",         "s",      "Single times at which to write, beside those of `every`.",
+      non_negative, optional, example("[0.1 s, 0.25 s]")};
   Param<std::vector<BodyIndex>> bodies{"bodies", nullptr, "Bodies to write; without it all.", optional,
                                        example("[water]")};
   Param<std::vector<FieldName>> fields{"fields", nullptr, "Fields to write beside position and id.", optional,
