@@ -23,11 +23,11 @@ struct RelaxParameters {
   double spacing = 0.0;
   /// Axes along which particles leave through one face and enter through the other.
   PeriodicBox domain{};
-  /// What keeps the particles together where the domain is not periodic. Faces that coincide with periodic ones do
-  /// not count. May be null only where every axis is periodic.
+  /// What keeps the particles together where the domain is not periodic. Faces that coincide with periodic
+  /// ones do not count. May be null only where every axis is periodic.
   ShapePtr shape;
-  /// Particles that stay where they are, those of a wall say, one lattice volume each. Where they stand they take
-  /// the place of the uniform medium outside the shape.
+  /// Particles that stay where they are, those of a wall say, one lattice volume each. Where they stand they
+  /// take the place of the uniform medium outside the shape.
   std::vector<Point> fixed;
   double displacement = 0.2;  ///< largest random displacement along each axis, in spacings
   std::uint64_t seed = 1;
@@ -36,8 +36,9 @@ struct RelaxParameters {
   double smoothing = 1.3;   ///< smoothing length in spacings; Wendland C2, cut off at twice that
 };
 
-/// How far sum_j V W(r_ij), with what is outside the shape, is from one. A lattice is not at zero: its kernel sum
-/// has an error of its own, 1 % at 1.3 spacings, the same for each particle. What disorder adds is the spread.
+/// How far sum_j V W(r_ij), with what is outside the shape, is from one. A lattice is not at zero: its kernel
+/// sum has an error of its own, 1 % at 1.3 spacings, the same for each particle. What disorder adds is the
+/// spread.
 struct Uniformity {
   double rms = 0.0;
   double largest = 0.0;
@@ -54,21 +55,23 @@ struct RelaxReport {
   Uniformity relaxed;
 };
 
-/// Displaces and relaxes the points in place; their order stays. The displacement of a point depends on the seed and
-/// its index alone, and all sums are serial in a fixed order, so the result is the same in every run.
+/// Displaces and relaxes the points in place; their order stays. The displacement of a point depends on the
+/// seed and its index alone, and all sums are serial in a fixed order, so the result is the same in every
+/// run.
 ///
 /// How many sweeps: the spread of the kernel sum, and the closest pair in spacings, in a periodic box after a
 /// displacement of 0.2 (test "relaxation: quality by sweeps" prints it):
 ///     sweeps            0      2      5     10     20     40    160
 ///     2D, 50 x 50  6.0e-2 9.5e-3 4.6e-3 2.9e-3 2.0e-3 1.6e-3 2.5e-3     closest 0.61 at 0, 0.94 at 20
 ///     3D, 16^3     4.9e-2 6.5e-3 3.4e-3 2.3e-3 1.7e-3 1.6e-3            closest 0.61 at 0, 0.82 at 20
-/// Ten sweeps are good, twenty (the default) are nearly all there is to gain. Later the particles leave the square
-/// lattice that they still resemble for denser packings, and moves no longer decrease: more sweeps only cost.
-/// Near a shape's surface the sum is off by up to 4 % for any arrangement of the particles, since the medium outside
-/// is uniform and they are not; with the wall's own particles (`fixed`) it is not.
+/// Ten sweeps are good, twenty (the default) are nearly all there is to gain. Later the particles leave the
+/// square lattice that they still resemble for denser packings, and moves no longer decrease: more sweeps
+/// only cost. Near a flat surface of a shape the sum is off by up to 4 % even for a lattice, since the medium
+/// outside is uniform and the particles are not (8 % measured in the tips of a polygon); beside the wall's own
+/// particles (`fixed`) it is not.
 ///
-/// Throws std::invalid_argument where a periodic axis is shorter than two cut-offs, points lie outside the domain or
-/// shape, or an axis has neither a period nor a shape.
+/// Throws std::invalid_argument where a periodic axis is shorter than two cut-offs, points lie outside the
+/// domain or shape, or an axis has neither a period nor a shape.
 RelaxReport relax(std::vector<Point>& points, const RelaxParameters& parameters);
 
 /// The quality of any distribution, measured as relax() does.

@@ -134,7 +134,8 @@ TEST_CASE("uniformity: agrees with a plain sum over all pairs and images") {
 }
 
 TEST_CASE("relaxation: a sweep is the shift of the formula, capped") {
-  // One particle of a periodic lattice off its place: the others' shift follows from the plain sum of gradients.
+  // One particle of a periodic lattice off its place: the others' shift follows from the plain sum of
+  // gradients.
   const int n = 10;
   const double s = 1.0 / n;
   const double h = 1.3 * s;
@@ -275,7 +276,8 @@ TEST_CASE("relaxation: stays within a shape and settles near half a spacing from
     RelaxParameters parameters = within(shape, 2, s);
     const RelaxReport report = relax(points, parameters);
     MESSAGE("spread " << report.displaced.spread << " to " << report.relaxed.spread << ", largest "
-                      << report.relaxed.largest << ", closest " << report.relaxed.closest_pair);
+                      << report.relaxed.largest << ", closest " << report.displaced.closest_pair << " to "
+                      << report.relaxed.closest_pair);
     CHECK(report.relaxed.spread < 0.2 * report.displaced.spread);
     CHECK(report.relaxed.closest_pair > 0.7);
     double outermost = -infinity;
@@ -320,7 +322,8 @@ TEST_CASE("relaxation: a channel, periodic along x between walls, with and witho
     deepest_at_period = std::min(deepest_at_period, std::min(p[0], 1.0 - p[0]));
   }
   CHECK(deepest_at_period < 0.45 * s);
-  // Uniform along the period: the lattice sees no wall there. Its worst error is the medium's, at the walls in y.
+  // Uniform along the period: the lattice sees no wall there. Its worst error is the medium's, at the walls
+  // in y.
   const Uniformity medium = measure_uniformity(lattice, parameters);
   const ShapePtr walls = std::make_shared<BoxShape>(BoxShape::Parameters{{0, -0.16, 0}, {1, 1.16, 0}, 2});
   parameters.fixed = fill_lattice(Difference({walls, unit_box(2)}), s, 2);
