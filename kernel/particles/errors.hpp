@@ -26,7 +26,7 @@ class ModelError : public std::runtime_error {
 };
 
 /// A callback of a plugin returned SHOAL_ERROR, or did what its contract forbids.
-class PluginFailure : public std::runtime_error {
+class OperatorFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -43,17 +43,17 @@ class PhysicsFailure : public std::runtime_error {
   struct Particle {
     std::int64_t id = -1;
     std::string body;
-    std::uint64_t index = 0;              ///< in the body's arrays
+    std::uint64_t index = 0;  ///< in the body's arrays
     double position[3] = {0.0, 0.0, 0.0};
-    std::string field;                    ///< the field that gave the particle away
-    double value = 0.0;                   ///< of its worst component
+    std::string field;   ///< the field that gave the particle away
+    double value = 0.0;  ///< of its worst component
   };
   struct Report {
-    std::string cause;                    ///< one sentence
+    std::string cause;  ///< one sentence
     std::string loop;
-    std::uint64_t step = 0;               ///< of that loop
-    double time = 0.0;                    ///< s
-    std::vector<Particle> worst;          ///< at most five
+    std::uint64_t step = 0;       ///< of that loop
+    double time = 0.0;            ///< s
+    std::vector<Particle> worst;  ///< at most five
   };
   explicit PhysicsFailure(Report report);
   const Report& report() const { return report_; }

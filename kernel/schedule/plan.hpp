@@ -41,9 +41,9 @@ struct PlanLoop {
 struct PlanRelation {
   std::string body, neighbours;
   shoal_configuration configuration = SHOAL_CURRENT;
-  double cutoff = 0.0;                 ///< m
-  double mean_neighbours = 0.0;        ///< 0 before the lists are built
-  double bytes_per_particle = 0.0;     ///< 0 before the lists are built
+  double cutoff = 0.0;              ///< m
+  double mean_neighbours = 0.0;     ///< 0 before the lists are built
+  double bytes_per_particle = 0.0;  ///< 0 before the lists are built
   std::uint64_t builds = 0;
 };
 
@@ -52,7 +52,7 @@ struct PlanField {
   shoal_rank rank = SHOAL_SCALAR;
   shoal_data_type data_type = SHOAL_DOUBLE;
   std::uint32_t bytes_per_particle = 0;
-  bool derived = false;                ///< not in checkpoints
+  bool derived = false;  ///< not in checkpoints
   std::vector<std::string> declared_by;
 };
 
@@ -61,48 +61,50 @@ struct PlanBody {
   std::uint64_t particles = 0;
   std::uint64_t halo_particles = 0;
   double spacing = 0.0, smoothing_length = 0.0, cutoff = 0.0;
-  bool moves = false;                  ///< re-sorted along cells
+  bool moves = false;  ///< re-sorted along cells
   std::vector<PlanField> fields;
-  std::uint64_t field_bytes = 0;       ///< allocated
-  std::uint64_t list_bytes = 0;        ///< of the lists whose rows are this body's particles
+  std::uint64_t field_bytes = 0;  ///< allocated
+  std::uint64_t list_bytes = 0;   ///< of the lists whose rows are this body's particles
 };
 
 struct Plan {
-  std::vector<PlanStage> outside;      ///< "initial" and "sample"
-  std::vector<PlanLoop> loops;         ///< the top of the tree
-  std::string outer_step_renews;       ///< empty, or why neighbours are renewed once per outer step
+  std::vector<PlanStage> outside;  ///< "initial" and "sample"
+  std::vector<PlanLoop> loops;     ///< the top of the tree
+  std::string outer_step_renews;   ///< empty, or why neighbours are renewed once per outer step
   std::vector<PlanRelation> relations;
   std::vector<PlanBody> bodies;
   std::vector<std::string> unscheduled;  ///< on-demand operators that nobody asked for
   std::vector<std::string> notes;
   std::uint64_t particles = 0;
-  std::uint64_t total_bytes = 0;       ///< fields and lists as allocated
+  std::uint64_t total_bytes = 0;  ///< fields and lists as allocated
 };
 
 struct OperatorTiming {
   std::string name, body, loop, stage;
   std::uint64_t calls = 0;
-  std::uint64_t particles = 0;         ///< visited, all calls together
-  std::uint64_t pairs = 0;             ///< true neighbours visited, all calls together
-  double seconds = 0.0;                ///< with begin, end and time_step
-  double nanoseconds_per_pair() const { return pairs == 0 ? 0.0 : 1e9 * seconds / static_cast<double>(pairs); }
+  std::uint64_t particles = 0;  ///< visited, all calls together
+  std::uint64_t pairs = 0;      ///< true neighbours visited, all calls together
+  double seconds = 0.0;         ///< with begin, end and time_step
+  double nanoseconds_per_pair() const {
+    return pairs == 0 ? 0.0 : 1e9 * seconds / static_cast<double>(pairs);
+  }
 };
 
 struct LoopTiming {
   std::string name;
   std::uint64_t steps = 0;
   double smallest_dt = 0.0, largest_dt = 0.0, last_dt = 0.0;
-  std::string limited_by;              ///< operator that set the last step
+  std::string limited_by;  ///< operator that set the last step
 };
 
 struct Timings {
   std::vector<OperatorTiming> operators;
   std::vector<LoopTiming> loops;
-  double steps = 0.0;                  ///< all of step(), s; the lines below are parts of it
+  double steps = 0.0;  ///< all of step(), s; the lines below are parts of it
   double operators_total = 0.0;
-  double neighbour_search = 0.0;       ///< sort, halos and lists together
+  double neighbour_search = 0.0;               ///< sort, halos and lists together
   double sort = 0.0, halo = 0.0, lists = 0.0;  ///< parts of neighbour_search
-  double halo_values = 0.0;            ///< renewing images between renewals of the lists
+  double halo_values = 0.0;                    ///< renewing images between renewals of the lists
   double clear = 0.0;
   double health = 0.0;
   std::uint64_t renewals = 0, sorts = 0, list_builds = 0;

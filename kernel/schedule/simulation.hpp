@@ -27,19 +27,12 @@
 #include <string_view>
 #include <vector>
 
+#include "kernel/particles/domain.hpp"
 #include "kernel/particles/errors.hpp"
 #include "kernel/schedule/plan.hpp"
 #include "shoal/abi.h"
 
 namespace shoal::kernel {
-
-enum class BoundaryKind { open, periodic, mirror };
-
-/// The domain is a box along the axes. A periodic axis is periodic at both faces; mirror planes may stand at either.
-struct AxisBoundary {
-  BoundaryKind lower = BoundaryKind::open;
-  BoundaryKind upper = BoundaryKind::open;
-};
 
 /// How texts of failed callbacks travel: `put` is what shoal_host::fail does, `take` gives the calling thread's text
 /// and forgets it. Without them a text of the engine's own per thread is used.
@@ -50,15 +43,15 @@ struct FailureChannel {
 
 struct SimulationSettings {
   int dimensions = 3;
-  double gravity[3] = {0.0, 0.0, 0.0};   // m/s2
-  double end_time = 0.0;                 // s
+  double gravity[3] = {0.0, 0.0, 0.0};  // m/s2
+  double end_time = 0.0;                // s
   /// The domain, m. Needed on axes with periodic or mirror faces. Where an axis is open and nothing is given, a
   /// particle has escaped once it is further outside the initial bounds of all particles than their extent there.
   std::optional<double> lower[3], upper[3];
   AxisBoundary boundaries[3];
   std::map<std::string, double> time_step_factors;  ///< by loop name; multiply what the operators allow
-  int threads = 0;                       ///< 0: as many as the machine has
-  std::uint64_t sort_interval = 0;       ///< renewals between re-sorts of moving bodies; 0: the kernel's choice
+  int threads = 0;                                  ///< 0: as many as the machine has
+  std::uint64_t sort_interval = 0;  ///< renewals between re-sorts of moving bodies; 0: the kernel's choice
   /// Fills images that are stale or were never declared with NaN, and derived fields after a restart, so that an
   /// undeclared read is seen. On in debug builds.
 #ifdef NDEBUG
@@ -74,20 +67,20 @@ struct InitialField {
   std::string name;
   shoal_rank rank = SHOAL_SCALAR;
   std::function<void(std::uint64_t n, const double* positions, double* out)> evaluate;
-  std::string place;                     ///< in the case, for messages
+  std::string place;  ///< in the case, for messages
 };
 
 struct BodySpecification {
   std::string name;
-  double spacing = 0.0;                  // m
-  double smoothing_length = 0.0;         // m
-  double cutoff = 0.0;                   // m
+  double spacing = 0.0;           // m
+  double smoothing_length = 0.0;  // m
+  double cutoff = 0.0;            // m
   std::string smoothing_kernel;
-  std::vector<double> positions;         ///< interleaved, as many numbers per particle as dimensions
-  std::vector<double> volumes;           ///< empty: spacing^dimensions
+  std::vector<double> positions;  ///< interleaved, as many numbers per particle as dimensions
+  std::vector<double> volumes;    ///< empty: spacing^dimensions
   const shoal_object* material = nullptr;
   std::vector<InitialField> initial_fields;
-  std::string place;                     ///< in the case, for messages
+  std::string place;  ///< in the case, for messages
 };
 
 struct FieldInfo {
@@ -124,19 +117,19 @@ class Simulation {
   // -- running --------------------------------------------------------------------------------------------------
   /// Initial values, first neighbour lists, stage "initial".
   void initialise();
-  /// One outer step, not beyond `no_later_than` or the end of the run. Throws PhysicsFailure, PluginFailure.
+  /// One outer step, not beyond `no_later_than` or the end of the run. Throws PhysicsFailure, OperatorFailure.
   void step(double no_later_than = std::numeric_limits<double>::infinity());
   /// Runs stage "sample".
   void sample();
   bool finished() const;
-  double time() const;                                  ///< s
-  double end_time() const;                              ///< s
-  void set_end_time(double end_time);                   ///< s; a resumed run may be longer
+  double time() const;                 ///< s
+  double end_time() const;             ///< s
+  void set_end_time(double end_time);  ///< s; a resumed run may be longer
   std::uint64_t outer_steps() const;
-  double last_outer_dt() const;                         ///< s; 0 before the first step
-  std::vector<std::string> loop_names() const;          ///< depth first
+  double last_outer_dt() const;                 ///< s; 0 before the first step
+  std::vector<std::string> loop_names() const;  ///< depth first
   std::uint64_t loop_steps(std::string_view loop) const;
-  double last_dt(std::string_view loop) const;          ///< s
+  double last_dt(std::string_view loop) const;  ///< s
 
   // -- looking --------------------------------------------------------------------------------------------------
   int dimensions() const;
@@ -153,7 +146,7 @@ class Simulation {
   shoal_field field(std::uint32_t body, std::string_view field) const;
   Plan plan() const;
   Timings timings() const;
-  std::uint64_t memory(std::uint32_t body) const;       ///< bytes of its fields and lists
+  std::uint64_t memory(std::uint32_t body) const;  ///< bytes of its fields and lists
 
   // -- checkpoints ----------------------------------------------------------------------------------------------
   /// A run that is saved, loaded into a fresh finalised Simulation of the same case, and continued is bitwise equal

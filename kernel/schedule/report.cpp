@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Plan and timings of a run.
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/schedule/simulation_implementation.hpp"
+
+namespace shoal::kernel {
+
+namespace {
+
+constexpr double nanosecond = 1e-9;
+
+double seconds(std::uint64_t ticks) { return nanosecond * static_cast<double>(ticks); }
+
+PlanOperator describe(const OperatorRun& op, const std::vector<std::unique_ptr<Body>>& bodies) {
+  PlanOperator text;
+  text.name = op.attachment.name;
+  text.body = op.body->name();
+  for (const shoal_relation_request& relation : op.attachment.relations)
+    text.neighbours.push_back(bodies[relation.body]->name());
+  for (const Access& access : op.attachment.accesses) {
+    if (access.has(SHOAL_READ)) text.reads.push_back(access.field);
+    if (access.has(SHOAL_WRITE)) text.writes.push_back(access.field);
+    if (access.has(SHOAL_ACCUMULATE)) text.accumulates.push_back(access.field);
+  }
+  text.serial = (op.c().flags & SHOAL_OPERATOR_SERIAL) != 0;
+  text.on_demand = op.attachment.on_demand();
+  text.limits_time_step = op.c().time_step != nullptr;
+  return text;
+}
+
+PlanLoop describe(const LoopRun& loop, const Schedule& schedule,
+                  const std::vector<std::unique_ptr<Body>>& bodies);
+
+PlanStage describe(const StageRun& stage, const Schedule& schedule,
+                   const std::vector<std::unique_ptr<Body>>& bodies) {
+  PlanStage text;
+  text.name = stage.name;
+  for (const BodyField& field : stage.clears)
+    text.clears.push_back(field.body->name() + "." + field.field->name());
+  for (const OperatorRun* op : stage.operators) text.operators.push_back(describe(*op, bodies));
+  for (const LoopRun* loop : stage.loops) text.loops.push_back(describe(*loop, schedule, bodies));
+  return text;
+}
+
+PlanLoop describe(const LoopRun& loop, const Schedule& schedule,
+                  const std::vector<std::unique_ptr<Body>>& bodies) {
+  PlanLoop text;
+  text.name = loop.name;
+  // A lone loop at the top is the outer step, whoever renews.
+  text.renews_neighbours = loop.renews_neighbours || (schedule.renews_in_outer_step &&
+                                                      schedule.top.size() == 1 && loop.parent == nullptr);
+  text.time_step_factor = loop.factor;
+  for (const StageRun& stage : loop.stages) text.stages.push_back(describe(stage, schedule, bodies));
+  return text;
+}
+
+PlanRelation describe(const Relation& relation, const std::vector<std::unique_ptr<Body>>& bodies) {
+  PlanRelation text;
+  const Body& body = *bodies[relation.body];
+  text.body = body.name();
+  text.neighbours = bodies[relation.neighbours]->name();
+  text.configuration = relation.configuration;
+  text.cutoff = relation.cutoff;
+  text.builds = relation.builds;
+  if (relation.builds > 0 && body.n_owned() > 0) {
+    const auto n = static_cast<double>(body.n_owned());
+    text.mean_neighbours = static_cast<double>(relation.list.n_pairs()) / n;
+    text.bytes_per_particle = static_cast<double>(relation.bytes()) / n;
+  }
+  return text;
+}
+
+PlanBody describe(const Body& body, const Neighbourhood& neighbourhood) {
+  PlanBody text;
+  text.name = body.name();
+  text.smoothing_kernel = body.smoothing_kernel;
+  text.particles = body.n_owned();
+  text.halo_particles = body.n_halo();
+  text.spacing = body.spacing;
+  text.smoothing_length = body.smoothing_length;
+  text.cutoff = body.cutoff;
+  text.moves = body.sorted_as_it_moves;
+  text.field_bytes = body.bytes();
+  text.list_bytes = neighbourhood.bytes(body.index());
+  for (const auto& field : body.fields()) {
+    const FieldSpecification& known = field->specification();
+    text.fields.push_back({known.name, known.unit, known.doc, known.rank, known.data_type,
+                           static_cast<std::uint32_t>(field->bytes_per_particle()), field->derived,
+                           field->declarers()});
+  }
+  return text;
+}
+
+}  // namespace
+
+Plan Simulation::Implementation::plan() const {
+  Plan plan;
+  for (const StageRun* stage : {&schedule.initial, &schedule.sample})
+    if (!stage->operators.empty()) plan.outside.push_back(describe(*stage, schedule, bodies));
+  for (const LoopRun* loop : schedule.top) plan.loops.push_back(describe(*loop, schedule, bodies));
+  plan.outer_step_renews = schedule.renews_in_outer_step ? schedule.outer_renewal : "";
+  for (const Relation& relation : neighbourhood.relations())
+    plan.relations.push_back(describe(relation, bodies));
+  for (const auto& body : bodies) {
+    plan.bodies.push_back(describe(*body, neighbourhood));
+    plan.particles += body->n_owned();
+    plan.total_bytes += plan.bodies.back().field_bytes + plan.bodies.back().list_bytes;
+  }
+  plan.unscheduled = schedule.unscheduled;
+  plan.notes = declarations.notes;
+  return plan;
+}
+
+Timings Simulation::Implementation::timings() const {
+  Timings timings;
+  std::uint64_t operator_ticks = 0;
+  for (const auto& op : schedule.operators) {
+    timings.operators.push_back({op->attachment.name, op->body->name(), op->loop, op->stage, op->calls,
+                                 op->particles, op->pairs, seconds(op->ticks)});
+    operator_ticks += op->ticks;
+  }
+  for (const auto& loop : schedule.loops)
+    timings.loops.push_back({loop->name, loop->steps, loop->steps > 0 ? loop->smallest_dt : 0.0,
+                             loop->largest_dt, loop->last_dt,
+                             loop->limited_by != nullptr ? loop->limited_by->attachment.name : ""});
+  timings.steps = seconds(stepper.step_ticks);
+  timings.operators_total = seconds(operator_ticks);
+  timings.neighbour_search = seconds(stepper.renewal_ticks);
+  timings.sort = seconds(neighbourhood.sort_ticks);
+  timings.halo = seconds(neighbourhood.halo_ticks);
+  timings.lists = seconds(neighbourhood.list_ticks);
+  timings.halo_values = seconds(executor.image_ticks);
+  timings.clear = seconds(executor.clear_ticks);
+  timings.health = seconds(stepper.health_ticks);
+  timings.renewals = neighbourhood.renewals;
+  timings.sorts = neighbourhood.sorts;
+  timings.list_builds = neighbourhood.list_builds;
+  return timings;
+}
+
+}  // namespace shoal::kernel
