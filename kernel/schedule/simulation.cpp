@@ -206,6 +206,21 @@ void Simulation::demand_field(std::string_view body, std::string_view field, std
   implementation_->declarations.demands.push_back({*index, std::string(field), std::move(place)});
 }
 
+bool Simulation::is_declared(std::string_view body, std::string_view field) const {
+  const std::optional<std::uint32_t> index = find_body(body);
+  if (!index) return false;
+  if (implementation_->bodies[*index]->find(field) != nullptr) return true;
+  const Declarations& said = implementation_->declarations;
+  return said.find_owner(*index, std::string(field)) != nullptr ||
+         std::any_of(said.attachments.begin(), said.attachments.end(), [&](const Attachment& attachment) {
+           return attachment.body() == *index &&
+                  std::any_of(attachment.accesses.begin(), attachment.accesses.end(), [&](const Access& access) {
+                    return access.field == field && !access.has(SHOAL_NOT_OWN) &&
+                           (access.changes() || !access.has(SHOAL_OPTIONAL));
+                  });
+         });
+}
+
 void Simulation::finalise() { implementation_->finalise(); }
 void Simulation::initialise() { implementation_->initialise(); }
 

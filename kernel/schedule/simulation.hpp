@@ -111,6 +111,9 @@ class Simulation {
   const std::string& builder_failure() const;
   /// An output or probe will read this field. Throws ModelError in finalise() if nobody declares it.
   void demand_field(std::string_view body, std::string_view field, std::string place = {});
+  /// Whether a physics has spoken of this field of the body, also if only on demand: then it may be demanded. Before
+  /// finalise().
+  bool is_declared(std::string_view body, std::string_view field) const;
   /// Resolves attachments, prunes on-demand operators, checks, allocates. Runs nothing. Throws ModelError.
   void finalise();
 
