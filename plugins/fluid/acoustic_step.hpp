@@ -41,7 +41,8 @@ struct AcousticPredictor : ParticleOperator<AcousticPredictor> {
     }
     const auto d = static_cast<std::uint64_t>(dimensions());
     for (std::uint64_t k = begin * d; k < end * d; ++k) x[k] += half * v[k];
-    equation_of_state.api->pressure(equation_of_state.self, end - begin, rho + begin, pressure.data() + begin);
+    equation_of_state.api->pressure(equation_of_state.self, end - begin, rho + begin,
+                                    pressure.data() + begin);
   }
   double time_step_of(auto i) const { return cfl * smoothing_length() / (sound_speed + norm(velocity[i])); }
 };

@@ -23,7 +23,9 @@ struct AdvectionStep : ParticleOperator<AdvectionStep> {
   double expected_speed = 0;  // m/s
   double cfl = 0.25;
 
-  double time_step_of(auto i) const { return cfl * smoothing_length() / std::max(norm(velocity[i]), expected_speed); }
+  double time_step_of(auto i) const {
+    return cfl * smoothing_length() / std::max(norm(velocity[i]), expected_speed);
+  }
 };
 
 // dv/dt = g
@@ -43,27 +45,34 @@ struct Gravity : ParticleOperator<Gravity> {
 // negative. C = 0.5 (measured: 0.2 leaves clumps at stagnation points of the Taylor-Green vortex).
 struct TransportShift : PairOperator<TransportShift> {
   In<Scalar> volume{"volume"};
-  Out<Vector> shift{"transport_shift", unit("m"), doc("Shift of the particle in this advection step."), derived};
+  Out<Vector> shift{"transport_shift", unit("m"), doc("Shift of the particle in this advection step."),
+                    derived};
 
   double strength = 0.5;
 
   auto pair(const auto& p) const { return p.j(volume) * p.grad_W(); }
-  void particle(auto i, auto sum) const { shift[i] = (-strength * smoothing_length() * smoothing_length()) * sum; }
+  void particle(auto i, auto sum) const {
+    shift[i] = (-strength * smoothing_length() * smoothing_length()) * sum;
+  }
 };
 
 // The walls' share; runs after TransportShift.
 struct WallTransportShift : PairOperator<WallTransportShift> {
   In<Scalar> wall_volume{"volume", neighbours_only};
-  InOut<Vector> shift{"transport_shift", unit("m"), doc("Shift of the particle in this advection step."), derived};
+  InOut<Vector> shift{"transport_shift", unit("m"), doc("Shift of the particle in this advection step."),
+                      derived};
 
   double strength = 0.5;
 
   auto pair(const auto& p) const { return p.j(wall_volume) * p.grad_W(); }
-  void particle(auto i, auto sum) const { shift[i] += (-strength * smoothing_length() * smoothing_length()) * sum; }
+  void particle(auto i, auto sum) const {
+    shift[i] += (-strength * smoothing_length() * smoothing_length()) * sum;
+  }
 };
 
 struct ApplyShift : ParticleOperator<ApplyShift> {
-  In<Vector> shift{"transport_shift", unit("m"), doc("Shift of the particle in this advection step."), derived};
+  In<Vector> shift{"transport_shift", unit("m"), doc("Shift of the particle in this advection step."),
+                   derived};
   InOut<Vector> position{"position"};
 
   void particle(auto i) const {

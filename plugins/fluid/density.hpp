@@ -10,25 +10,10 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 
 #include "shoal/pair_operator.hpp"
 
 namespace shoal::fluid {
-
-// sum of W over a lattice, the particle in its middle included, in 1/m^D.
-inline double lattice_sum(int dimensions, SmoothingKernel kind, double h, double spacing) {
-  const auto sum = [&](const auto& kernel) {
-    const int n = static_cast<int>(kernel.cutoff() / spacing) + 1;
-    const int depth = dimensions == 3 ? n : 0;
-    double total = 0;
-    for (int a = -n; a <= n; ++a)
-      for (int b = -n; b <= n; ++b)
-        for (int c = -depth; c <= depth; ++c) total += kernel.w(spacing * std::sqrt(double(a * a + b * b + c * c)));
-    return total;
-  };
-  return dimensions == 2 ? with_kernel<2>(kind, h, sum) : with_kernel<3>(kind, h, sum);
-}
 
 // sum_j V_j W_ij of the walls; runs before DensityReinitialisation, which adds it.
 struct WallDensity : PairOperator<WallDensity> {
@@ -56,7 +41,8 @@ struct DensitySum : PairOperator<Derived> {
     const double rest_volume = mass[i] / reference_density;
     const double summed =
         reference_density * per_lattice_sum * (sum + this->self_W() + wall_sum / rest_volume);
-    const double excess = free_surface ? std::max(0.0, density[i] - summed) * reference_density / density[i] : 0.0;
+    const double excess =
+        free_surface ? std::max(0.0, density[i] - summed) * reference_density / density[i] : 0.0;
     density[i] = summed + excess;
     volume[i] = mass[i] / density[i];
   }

@@ -16,21 +16,27 @@ namespace shoal::fluid {
 
 struct Liquid final : Material {
   Param<double> density{"density", "kg/m3", "Density at rest.", positive, example("1000")};
-  Param<double> viscosity{"viscosity", "Pa s", "Dynamic viscosity; 0 leaves viscosity out of the run.", non_negative,
-                          default_to(0.0), example("1e-3")};
-  Param<double> sound_speed{
-      "sound_speed", "m/s",
-      "Artificial speed of sound. Without it ten times the largest speed that the physics expects, which keeps the "
-      "density within about 1 %.",
-      positive, optional, example("20")};
-  Param<Choice> equation_of_state{"equation_of_state", nullptr,
-                                  "linear: p = c^2 (rho - rho0). tait: stiffer under compression, for comparison with "
-                                  "codes that use it.",
-                                  one_of("linear", "tait"), default_to("linear")};
+  Param<double> viscosity{
+      "viscosity",  "Pa s",          "Dynamic viscosity; 0 leaves viscosity out of the run.",
+      non_negative, default_to(0.0), example("1e-3")};
+  Param<double> sound_speed{"sound_speed",
+                            "m/s",
+                            "Artificial speed of sound. Without it ten times the largest speed that the "
+                            "physics expects, which keeps the "
+                            "density within about 1 %.",
+                            positive,
+                            optional,
+                            example("20")};
+  Param<Choice> equation_of_state{
+      "equation_of_state", nullptr,
+      "linear: p = c^2 (rho - rho0). tait: stiffer under compression, for comparison with "
+      "codes that use it.",
+      one_of("linear", "tait"), default_to("linear")};
   Param<double> exponent{"exponent", "1", "Exponent gamma of Tait's equation.", positive, default_to(7.0)};
 
   const void* interface(std::string_view name, std::uint32_t revision) const override {
-    return name == SHOAL_EQUATION_OF_STATE && revision == SHOAL_EQUATION_OF_STATE_REVISION ? &table_ : nullptr;
+    return name == SHOAL_EQUATION_OF_STATE && revision == SHOAL_EQUATION_OF_STATE_REVISION ? &table_
+                                                                                           : nullptr;
   }
 
  private:
@@ -69,10 +75,11 @@ struct Liquid final : Material {
 
 // A solid wall. Its particles do not move by themselves; their velocity is that of the wall's surface.
 struct Wall final : Material {
-  Param<Choice> slip{"slip", nullptr,
-                     "no_slip: a viscous fluid sticks to the wall. free_slip: the wall exerts no friction, e.g. where "
-                     "the boundary layer is thinner than the particles.",
-                     one_of("no_slip", "free_slip"), default_to("no_slip")};
+  Param<Choice> slip{
+      "slip", nullptr,
+      "no_slip: a viscous fluid sticks to the wall. free_slip: the wall exerts no friction, e.g. where "
+      "the boundary layer is thinner than the particles.",
+      one_of("no_slip", "free_slip"), default_to("no_slip")};
 };
 
 }  // namespace shoal::fluid

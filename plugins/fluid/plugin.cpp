@@ -1,18 +1,22 @@
 // SPDX-FileCopyrightText: The Shoal authors
 // SPDX-License-Identifier: Apache-2.0
-#include "liquid.hpp"
 #include "shoal/plugin.hpp"
+#include "liquid.hpp"
 #include "wcsph.hpp"
 
 SHOAL_PLUGIN(fluid, "0.1.0") {
   using namespace shoal::fluid;
   summary("Weakly compressible liquids with free surfaces and walls.");
-  citation("Zhang, Rezavand, Hu, J. Comput. Phys. 404 (2020) 109135; Zhang, Hu, Adams, J. Comput. Phys. 335 (2017) 605");
+  citation(
+      "Zhang, Rezavand, Hu, J. Comput. Phys. 404 (2020) 109135; Zhang, Hu, Adams, J. Comput. Phys. 335 "
+      "(2017) 605");
   add<Liquid>("fluid.liquid", "A weakly compressible liquid.", "Monaghan 1994");
   add<Wall>("fluid.wall", "A solid wall for fluids.", "Zhang, Hu, Adams 2017");
   add<Wcsph>("fluid.wcsph",
-             "Weakly compressible flow with a low-dissipation Riemann solver and two time steps: neighbours, viscosity "
-             "and gravity with the flow's speed, pressure with the speed of sound. Take it for dam breaks, sloshing, "
+             "Weakly compressible flow with a low-dissipation Riemann solver and two time steps: neighbours, "
+             "viscosity "
+             "and gravity with the flow's speed, pressure with the speed of sound. Take it for dam breaks, "
+             "sloshing, "
              "impacts, and internal flows at moderate Mach number.",
              "Zhang, Rezavand, Hu 2020");
 }

@@ -25,11 +25,13 @@ struct PressureForce : PairOperator<PressureForce> {
   In<Scalar> volume{"volume"};
   In<Scalar> density{"density", own_only};
   In<Vector> acceleration{"acceleration", own_only};
-  InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"), doc("Acceleration by pressure.")};
+  InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"),
+                                      doc("Acceleration by pressure.")};
   Out<Scalar> density_rate{"density_rate", unit("kg/m3/s"), doc("Rate of change of the density.")};
 
   double reference_density = 0;  // kg/m3
   double sound_speed = 0;        // m/s
+  double gradient_scale = 1;     // 1 / slope of lattice_sums()
 
   auto pair(const auto& p) const {
     const auto weight = p.j(volume) * p.dW_over_r();
@@ -38,8 +40,8 @@ struct PressureForce : PairOperator<PressureForce> {
     return sums((weight * (p.i(pressure) + p.j(pressure))) * p.r_ij(), weight * p.r() * jump);
   }
   void particle(auto i, auto force, auto dissipation) const {
-    pressure_acceleration[i] -= force / density[i];
-    density_rate[i] = dissipation / sound_speed;
+    pressure_acceleration[i] -= (gradient_scale / density[i]) * force;
+    density_rate[i] = (gradient_scale / sound_speed) * dissipation;
   }
 };
 
@@ -51,8 +53,9 @@ struct VelocityDivergence : PairOperator<VelocityDivergence> {
   Out<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"), doc("Acceleration by pressure.")};
   InOut<Scalar> density_rate{"density_rate", unit("kg/m3/s"), doc("Rate of change of the density.")};
 
-  double sound_speed = 0;  // m/s
-  double limiter = 3.0;    // eta of the paper
+  double sound_speed = 0;     // m/s
+  double limiter = 3.0;       // eta of the paper
+  double gradient_scale = 1;  // 1 / slope of lattice_sums()
 
   auto pair(const auto& p) const {
     const auto weight = p.j(volume) * p.dW_over_r();
@@ -62,8 +65,8 @@ struct VelocityDivergence : PairOperator<VelocityDivergence> {
     return sums(weight * v_r, (weight * beta * approach) * p.r_ij());
   }
   void particle(auto i, auto divergence, auto dissipation) const {
-    density_rate[i] += density[i] * divergence;
-    pressure_acceleration[i] = -sound_speed * dissipation;
+    density_rate[i] += gradient_scale * density[i] * divergence;
+    pressure_acceleration[i] = (-gradient_scale * sound_speed) * dissipation;
   }
 };
 

@@ -31,11 +31,14 @@ struct ViscousForce : PairOperator<ViscousForce> {
 
   double viscosity = 0;          // Pa s
   double reference_density = 0;  // kg/m3
+  double gradient_scale = 1;     // 1 / slope of lattice_sums()
 
   auto pair(const auto& p) const {
     return (p.j(volume) * p.dW() / (p.r() + 0.01 * p.h())) * (p.i(velocity) - p.j(velocity));
   }
-  void particle(auto i, auto sum) const { acceleration[i] += (2.0 * viscosity / density[i]) * sum; }
+  void particle(auto i, auto sum) const {
+    acceleration[i] += (2.0 * gradient_scale * viscosity / density[i]) * sum;
+  }
   double time_step(double h) const { return 0.125 * h * h * reference_density / viscosity; }
 };
 
@@ -49,15 +52,17 @@ struct WallViscousForce : PairOperator<WallViscousForce> {
   In<Scalar> wall_volume{"volume", neighbours_only};
   Accumulate<Vector> acceleration{"acceleration"};
 
-  double viscosity = 0;  // Pa s
+  double viscosity = 0;       // Pa s
+  double gradient_scale = 1;  // 1 / slope of lattice_sums()
 
   auto pair(const auto& p) const {
     const auto across = abs(dot(p.j(wall_normal), p.r_ij()));
-    return (p.j(wall_volume) * p.dW() / (p.r() + 0.01 * p.h()) *
-            no_slip_factor(across, p.j(wall_distance))) *
+    return (p.j(wall_volume) * p.dW() / (p.r() + 0.01 * p.h()) * no_slip_factor(across, p.j(wall_distance))) *
            (p.i(velocity) - p.j(wall_velocity));
   }
-  void particle(auto i, auto sum) const { acceleration[i] += (2.0 * viscosity / density[i]) * sum; }
+  void particle(auto i, auto sum) const {
+    acceleration[i] += (2.0 * gradient_scale * viscosity / density[i]) * sum;
+  }
 };
 
 }  // namespace shoal::fluid

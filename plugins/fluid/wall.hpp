@@ -37,15 +37,19 @@ struct WallPressureForce : PairOperator<WallPressureForce> {
   In<Scalar> density{"density", own_only};
   In<Vector> acceleration{"acceleration", own_only};
   In<Scalar> wall_volume{"volume", neighbours_only};
-  InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"), doc("Acceleration by pressure.")};
+  InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"),
+                                      doc("Acceleration by pressure.")};
 
   double reference_density = 0;  // kg/m3
+  double gradient_scale = 1;     // 1 / slope of lattice_sums()
 
   auto pair(const auto& p) const {
     const auto p_w = wall_pressure(reference_density, p.i(pressure), p.i(acceleration), -p.r_ij());
     return (p.j(wall_volume) * p.dW_over_r() * (p.i(pressure) + p_w)) * p.r_ij();
   }
-  void particle(auto i, auto force) const { pressure_acceleration[i] -= force / density[i]; }
+  void particle(auto i, auto force) const {
+    pressure_acceleration[i] -= (gradient_scale / density[i]) * force;
+  }
 };
 
 // The walls' share of VelocityDivergence. Runs after it.
@@ -55,11 +59,13 @@ struct WallVelocityDivergence : PairOperator<WallVelocityDivergence> {
   In<Vector> wall_velocity{"velocity", neighbours_only};
   In<Vector> wall_normal{"normal", neighbours_only};
   In<Scalar> wall_volume{"volume", neighbours_only};
-  InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"), doc("Acceleration by pressure.")};
+  InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"),
+                                      doc("Acceleration by pressure.")};
   InOut<Scalar> density_rate{"density_rate", unit("kg/m3/s"), doc("Rate of change of the density.")};
 
   double sound_speed = 0;  // m/s
   double limiter = 3.0;
+  double gradient_scale = 1;  // 1 / slope of lattice_sums()
 
   auto pair(const auto& p) const {
     const auto weight = p.j(wall_volume) * p.dW_over_r();
@@ -70,8 +76,8 @@ struct WallVelocityDivergence : PairOperator<WallVelocityDivergence> {
     return sums(weight * v_n * dot(n, p.r_ij()), (weight * p.r() * beta * approach) * n);
   }
   void particle(auto i, auto divergence, auto dissipation) const {
-    density_rate[i] += density[i] * divergence;
-    pressure_acceleration[i] -= sound_speed * dissipation;
+    density_rate[i] += gradient_scale * density[i] * divergence;
+    pressure_acceleration[i] -= gradient_scale * sound_speed * dissipation;
   }
 };
 
@@ -90,6 +96,7 @@ struct WallForce : PairOperator<WallForce> {
   double sound_speed = 0;        // m/s
   double viscosity = 0;          // Pa s; 0 on free-slip walls
   double limiter = 3.0;
+  double gradient_scale = 1;  // 1 / slope of lattice_sums()
 
   auto pair(const auto& p) const {
     const auto weight = p.j(volume) * p.dW_over_r();
@@ -97,12 +104,13 @@ struct WallForce : PairOperator<WallForce> {
     const auto n = towards(-p.r_ij(), p.i(wall_normal));
     const auto v = p.j(velocity) - p.i(velocity);
     const auto approach = max(0.0, -2.0 * dot(v, n));
-    const auto impact = reference_density * sound_speed * approach * min(1.0, (limiter / sound_speed) * approach);
+    const auto impact =
+        reference_density * sound_speed * approach * min(1.0, (limiter / sound_speed) * approach);
     const auto shear = 2.0 * viscosity * no_slip_factor(-dot(n, p.r_ij()), p.i(wall_distance)) * p.r() /
                        (p.r() + 0.01 * p.h());
     return weight * (impact * p.r() * n - (p.j(pressure) + p_w) * p.r_ij() - shear * v);
   }
-  void particle(auto i, auto sum) const { force[i] = volume[i] * sum; }
+  void particle(auto i, auto sum) const { force[i] = gradient_scale * volume[i] * sum; }
 };
 
 }  // namespace shoal::fluid

@@ -8,6 +8,7 @@
 #include "acoustic_step.hpp"
 #include "advection_step.hpp"
 #include "density.hpp"
+#include "lattice.hpp"
 #include "liquid.hpp"
 #include "riemann.hpp"
 #include "viscosity.hpp"
@@ -38,7 +39,8 @@ double height(const Builder& b, const std::vector<BodyIndex>& bodies, const Vect
     const shoal_body& body = b.body(index);
     for (int corner = 0; corner < 8; ++corner) {
       double along = 0;
-      for (unsigned a = 0; a < 3; ++a) along += g[a] / magnitude * ((corner >> a & 1) ? body.upper[a] : body.lower[a]);
+      for (unsigned a = 0; a < 3; ++a)
+        along += g[a] / magnitude * ((corner >> a & 1) ? body.upper[a] : body.lower[a]);
       low = std::min(low, along);
       high = std::max(high, along);
     }
@@ -54,6 +56,7 @@ struct FluidBody {
   std::vector<BodyIndex> walls, no_slip_walls;
   EquationOfState equation_of_state;
   double density, viscosity, sound_speed, max_speed;
+  LatticeSums lattice = lattice_sums(b.dimensions(), b.target(body));
 
   bool has_walls() const { return !walls.empty(); }
   Target itself() const { return b.target(body); }
@@ -68,7 +71,8 @@ struct FluidBody {
     if (physics.free_surface || physics.shift_strength == 0.0) return;
     const auto strength = [&](auto& op) { op.strength = physics.shift_strength; };
     b.attach<TransportShift>("fluid.transport_shift", at_shift, itself(), strength);
-    if (has_walls()) b.attach<WallTransportShift>("fluid.transport_shift.walls", at_shift, and_walls(), strength);
+    if (has_walls())
+      b.attach<WallTransportShift>("fluid.transport_shift.walls", at_shift, and_walls(), strength);
     b.attach<ApplyShift>("fluid.apply_shift", at_shift, itself());
   }
 
@@ -76,8 +80,7 @@ struct FluidBody {
     const Target target = itself();
     const auto setup = [&](auto& op) {
       op.reference_density = density;
-      op.per_lattice_sum =
-          1.0 / lattice_sum(b.dimensions(), target.smoothing_kernel, target.smoothing_length, target.spacing);
+      op.per_lattice_sum = 1.0 / lattice.w;
       op.free_surface = physics.free_surface;
     };
     if (has_walls()) {
@@ -101,10 +104,14 @@ struct FluidBody {
     b.attach<ViscousForce>("fluid.viscous_force", at_forces, itself(), [&](auto& op) {
       op.viscosity = viscosity;
       op.reference_density = density;
+      op.gradient_scale = 1.0 / lattice.slope;
     });
     if (!no_slip_walls.empty())
       b.attach<WallViscousForce>("fluid.viscous_force.walls", at_forces, b.target(body, no_slip_walls),
-                                 [&](auto& op) { op.viscosity = viscosity; });
+                                 [&](auto& op) {
+                                   op.viscosity = viscosity;
+                                   op.gradient_scale = 1.0 / lattice.slope;
+                                 });
   }
 
   void attach_acoustic() const {
@@ -116,17 +123,22 @@ struct FluidBody {
     b.attach<PressureForce>("fluid.pressure_force", at_momentum, itself(), [&](auto& op) {
       op.reference_density = density;
       op.sound_speed = sound_speed;
+      op.gradient_scale = 1.0 / lattice.slope;
     });
     if (has_walls())
-      b.attach<WallPressureForce>("fluid.pressure_force.walls", at_momentum, and_walls(),
-                                  [&](auto& op) { op.reference_density = density; });
+      b.attach<WallPressureForce>("fluid.pressure_force.walls", at_momentum, and_walls(), [&](auto& op) {
+        op.reference_density = density;
+        op.gradient_scale = 1.0 / lattice.slope;
+      });
     b.attach<Kick>("fluid.kick", at_kick, itself());
     const auto riemann = [&](auto& op) {
       op.sound_speed = sound_speed;
       op.limiter = physics.dissipation_limiter;
+      op.gradient_scale = 1.0 / lattice.slope;
     };
     b.attach<VelocityDivergence>("fluid.divergence", at_continuity, itself(), riemann);
-    if (has_walls()) b.attach<WallVelocityDivergence>("fluid.divergence.walls", at_continuity, and_walls(), riemann);
+    if (has_walls())
+      b.attach<WallVelocityDivergence>("fluid.divergence.walls", at_continuity, and_walls(), riemann);
     b.attach<DensityCorrector>("fluid.correct_density", at_continuity, itself());
   }
 
@@ -139,14 +151,16 @@ struct FluidBody {
       target.smoothing_kernel = itself().smoothing_kernel;
       target.smoothing_length = itself().smoothing_length;
       target.cutoff = itself().cutoff;
-      b.attach<WallForce>("fluid.wall_force", {SHOAL_SAMPLE, "forces"}, target,
-                          [&](auto& op) {
-                            op.reference_density = density;
-                            op.sound_speed = sound_speed;
-                            op.viscosity = sticks ? viscosity : 0.0;
-                            op.limiter = physics.dissipation_limiter;
-                          },
-                          SHOAL_OPERATOR_ON_DEMAND);
+      b.attach<WallForce>(
+          "fluid.wall_force", {SHOAL_SAMPLE, "forces"}, target,
+          [&](auto& op) {
+            op.reference_density = density;
+            op.sound_speed = sound_speed;
+            op.viscosity = sticks ? viscosity : 0.0;
+            op.limiter = physics.dissipation_limiter;
+            op.gradient_scale = 1.0 / lattice.slope;
+          },
+          SHOAL_OPERATOR_ON_DEMAND);
     }
   }
 };
@@ -157,8 +171,9 @@ double expected_speed(const Wcsph& physics, const Builder& b) {
   const Vector3 g = b.gravity();
   const double magnitude = std::hypot(g[0], g[1], g[2]);
   if (magnitude == 0.0)
-    throw CaseError("fluid.wcsph needs max_speed, the largest speed that the flow will reach (without gravity there is "
-                    "nothing to estimate it from), e.g. max_speed: 1 m/s");
+    throw CaseError(
+        "fluid.wcsph needs max_speed, the largest speed that the flow will reach (without gravity there is "
+        "nothing to estimate it from), e.g. max_speed: 1 m/s");
   return 2.0 * std::sqrt(magnitude * height(b, physics.bodies, g, magnitude));
 }
 
@@ -178,12 +193,13 @@ void Wcsph::build(const Builder& b) {
     const auto eos = b.material_interface<shoal_equation_of_state>(body, SHOAL_EQUATION_OF_STATE,
                                                                    SHOAL_EQUATION_OF_STATE_REVISION);
     if (!eos)
-      throw CaseError(std::string("body '") + b.body(body).name +
-                      "' needs a material with an equation of state, e.g. material: {fluid.liquid: {density: 1000}}");
+      throw CaseError(
+          std::string("body '") + b.body(body).name +
+          "' needs a material with an equation of state, e.g. material: {fluid.liquid: {density: 1000}}");
     const double rho0 = eos.api->reference_density(eos.self);
     const double c = eos.api->set_sound_speed(eos.self, 10.0 * speed);
-    const FluidBody fluid{b,   *this, body, walls, no_slip_walls, eos, rho0, eos.api->viscosity(eos.self),
-                          c,   speed};
+    const FluidBody fluid{b, *this, body, walls, no_slip_walls, eos, rho0, eos.api->viscosity(eos.self),
+                          c, speed};
     b.body_moves(body);
     b.guard(body, "density", 0.5 * rho0, 2.0 * rho0);
     b.note(std::string(b.body(body).name) + ": sound speed " + number(c) + " m/s for an expected speed of " +

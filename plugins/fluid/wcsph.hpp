@@ -20,24 +20,32 @@ namespace shoal::fluid {
 struct Wcsph final : Physics {
   Param<std::vector<BodyIndex>> bodies{"bodies", nullptr, "Bodies of fluid, each of material fluid.liquid.",
                                        example("[water]")};
-  Param<std::vector<BodyIndex>> walls{"walls", nullptr, "Bodies of material fluid.wall that bound the fluid.", optional,
-                                      example("[tank]")};
-  Param<double> max_speed{"max_speed", "m/s",
-                          "Largest speed that the flow will reach; sets the speed of sound and the first steps. Without "
-                          "it 2 sqrt(g H), H being the fluid's height along gravity.",
-                          positive, optional, example("2")};
-  Param<bool> free_surface{"free_surface", nullptr,
-                           "Whether the fluid has a free surface. Without one, density is summed everywhere and "
-                           "particles are kept evenly spread.",
-                           default_to(true)};
-  Param<double> advection_cfl{"advection_cfl", "1", "Advection step over h / |v|.", positive, default_to(0.25)};
-  Param<double> acoustic_cfl{"acoustic_cfl", "1", "Acoustic step over h / (c + |v|).", positive, default_to(0.6)};
+  Param<std::vector<BodyIndex>> walls{"walls", nullptr, "Bodies of material fluid.wall that bound the fluid.",
+                                      optional, example("[tank]")};
+  Param<double> max_speed{
+      "max_speed",
+      "m/s",
+      "Largest speed that the flow will reach; sets the speed of sound and the first steps. Without "
+      "it 2 sqrt(g H), H being the fluid's height along gravity.",
+      positive,
+      optional,
+      example("2")};
+  Param<bool> free_surface{
+      "free_surface", nullptr,
+      "Whether the fluid has a free surface. Without one, density is summed everywhere and "
+      "particles are kept evenly spread.",
+      default_to(true)};
+  Param<double> advection_cfl{"advection_cfl", "1", "Advection step over h / |v|.", positive,
+                              default_to(0.25)};
+  Param<double> acoustic_cfl{"acoustic_cfl", "1", "Acoustic step over h / (c + |v|).", positive,
+                             default_to(0.6)};
   Param<double> dissipation_limiter{
       "dissipation_limiter", "1",
-      "Factor eta of the Riemann solver's limiter min(eta (u_L - u_R) / c, 1); larger damps more.", non_negative,
-      default_to(3.0)};
-  Param<double> shift_strength{"shift_strength", "1", "Factor of the shift where there is no free surface; 0: none.",
-                               non_negative, default_to(0.5)};
+      "Factor eta of the Riemann solver's limiter min(eta (u_L - u_R) / c, 1); larger damps more.",
+      non_negative, default_to(3.0)};
+  Param<double> shift_strength{"shift_strength", "1",
+                               "Factor of the shift where there is no free surface; 0: none.", non_negative,
+                               default_to(0.5)};
 
   void build(const Builder& builder);
 };

@@ -21,26 +21,27 @@ class Material : public Parameterised {
 
   // The table of functions of an interface; they are called with the material as `self`, so they cast it with
   // `material_of<Derived>(self)`. Null if the material does not offer it.
-  virtual const void* interface(std::string_view /*name*/, std::uint32_t /*revision*/) const { return nullptr; }
+  virtual const void* interface(std::string_view /*name*/, std::uint32_t /*revision*/) const {
+    return nullptr;
+  }
 
   int dimensions() const { return dimensions_; }
 
   template <class Derived>
   static const void* api() {
-    static const shoal_material_api table{
-        sizeof(shoal_material_api), 0,
-        [](const shoal_object* object, int32_t dimensions, void** self) {
-          return guarded([&] {
-            auto material = std::make_unique<Derived>();
-            material->read(*object, dimensions);
-            static_cast<Material&>(*material).dimensions_ = dimensions;
-            *self = static_cast<Material*>(material.release());
-          });
-        },
-        [](void* self) { delete static_cast<Material*>(self); },
-        [](void* self, const char* name, uint32_t revision) -> const void* {
-          return static_cast<Material*>(self)->interface(name, revision);
-        }};
+    static const shoal_material_api table{sizeof(shoal_material_api), 0,
+                                          [](const shoal_object* object, int32_t dimensions, void** self) {
+                                            return guarded([&] {
+                                              auto material = std::make_unique<Derived>();
+                                              material->read(*object, dimensions);
+                                              static_cast<Material&>(*material).dimensions_ = dimensions;
+                                              *self = static_cast<Material*>(material.release());
+                                            });
+                                          },
+                                          [](void* self) { delete static_cast<Material*>(self); },
+                                          [](void* self, const char* name, uint32_t revision) -> const void* {
+                                            return static_cast<Material*>(self)->interface(name, revision);
+                                          }};
     return &table;
   }
 

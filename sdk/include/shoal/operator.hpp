@@ -148,8 +148,7 @@ class Field : public impl::FieldMember {
 
  protected:
   Field(const char* field, std::uint32_t mode)
-      : FieldMember(field, mode, impl::rank_of<T>,
-                    std::is_same_v<T, Integer> ? SHOAL_INT64 : SHOAL_DOUBLE) {}
+      : FieldMember(field, mode, impl::rank_of<T>, std::is_same_v<T, Integer> ? SHOAL_INT64 : SHOAL_DOUBLE) {}
 };
 
 // Reads a field; in pair operators of the particle and of its neighbours.
@@ -226,9 +225,9 @@ struct Target {
   BodyIndex body;
   std::vector<BodyIndex> neighbours;  // of pair operators
   SmoothingKernel smoothing_kernel = SmoothingKernel::wendland_c2;
-  double smoothing_length = 0;        // m
-  double cutoff = 0;                  // m
-  double spacing = 0;                 // m
+  double smoothing_length = 0;  // m
+  double cutoff = 0;            // m
+  double spacing = 0;           // m
   shoal_configuration configuration = SHOAL_CURRENT;
 };
 
@@ -295,7 +294,8 @@ class OperatorBase : public Parameterised {
 
 namespace impl {
 
-inline FieldMember::FieldMember(const char* field, std::uint32_t mode, shoal_rank rank, shoal_data_type type) {
+inline FieldMember::FieldMember(const char* field, std::uint32_t mode, shoal_rank rank,
+                                shoal_data_type type) {
   OperatorBase& owner = *OperatorBase::enrolling_;
   access_.size = sizeof(shoal_access);
   access_.mode = mode;
@@ -370,7 +370,8 @@ template <class Op>
 shoal_operator describe(std::unique_ptr<AttachedOperator<Op>> attached, std::uint32_t flags) {
   const Target& target = attached->op.target();
   if (target.neighbours.size() > max_neighbour_bodies)
-    throw CaseError(attached->name + ": more than " + std::to_string(max_neighbour_bodies) + " neighbour bodies");
+    throw CaseError(attached->name + ": more than " + std::to_string(max_neighbour_bodies) +
+                    " neighbour bodies");
   attached->accesses = attached->op.accesses();
   for (const BodyIndex neighbour : target.neighbours)
     attached->relations.push_back({sizeof(shoal_relation_request), neighbour.value,
@@ -390,13 +391,13 @@ shoal_operator describe(std::unique_ptr<AttachedOperator<Op>> attached, std::uin
   c.bind = [](void* self, const shoal_binding* binding) {
     return guarded([&] {
       op_of<Op>(self).bind(*binding);
-      if constexpr (requires(Op& op) { op.bound(); }) op_of<Op>(self).bound();
+      if constexpr (requires(Op & op) { op.bound(); }) op_of<Op>(self).bound();
     });
   };
   c.begin = [](void* self, const shoal_step* step) {
     return guarded([&] {
       op_of<Op>(self).set_step(*step);
-      if constexpr (requires(Op& op) { op.begin(); }) op_of<Op>(self).begin();
+      if constexpr (requires(Op & op) { op.begin(); }) op_of<Op>(self).begin();
     });
   };
   c.run = [](void* self, const shoal_step* step, const shoal_chunk* chunk) {
@@ -408,7 +409,7 @@ shoal_operator describe(std::unique_ptr<AttachedOperator<Op>> attached, std::uin
   c.end = [](void* self, const shoal_step*, const double* results) {
     return guarded([&] {
       op_of<Op>(self).set_results(results);
-      if constexpr (requires(Op& op) { op.end(); }) op_of<Op>(self).end();
+      if constexpr (requires(Op & op) { op.end(); }) op_of<Op>(self).end();
     });
   };
   if constexpr (HasParticleTimeStep<Op, 2> || HasTimeStep<Op>) {
@@ -416,8 +417,12 @@ shoal_operator describe(std::unique_ptr<AttachedOperator<Op>> attached, std::uin
     if constexpr (HasParticleTimeStep<Op, 2>) c.flags |= SHOAL_OPERATOR_TIME_STEP_OF_PARTICLES;
   }
   if constexpr (HasState<Op>) {
-    c.save = [](void* self, const shoal_stream* stream) { return guarded([&] { op_of<Op>(self).save(*stream); }); };
-    c.load = [](void* self, const shoal_stream* stream) { return guarded([&] { op_of<Op>(self).load(*stream); }); };
+    c.save = [](void* self, const shoal_stream* stream) {
+      return guarded([&] { op_of<Op>(self).save(*stream); });
+    };
+    c.load = [](void* self, const shoal_stream* stream) {
+      return guarded([&] { op_of<Op>(self).load(*stream); });
+    };
   }
   c.self = attached.release();
   return c;

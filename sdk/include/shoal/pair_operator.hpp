@@ -62,7 +62,8 @@ template <class... Values, class M>
 void add_lanes(Sums<Values...>& sum, const Sums<Values...>& value, M lanes) {
   [&]<std::size_t... k>(std::index_sequence<k...>) {
     (add_lanes(std::get<k>(sum.values), std::get<k>(value.values), lanes), ...);
-  }(std::index_sequence_for<Values...>{});
+  }
+  (std::index_sequence_for<Values...>{});
 }
 
 template <class Op, int D, class Sum>
@@ -84,8 +85,8 @@ class Pair {
   using RealType = R;
   using Indices = typename RealTraits<R>::IndexType;
 
-  Pair(const Kernel& kernel, std::size_t relation, Particle<D> i, const Vec<D>& x_i, const double* x_of_neighbours,
-       Indices j)
+  Pair(const Kernel& kernel, std::size_t relation, Particle<D> i, const Vec<D>& x_i,
+       const double* x_of_neighbours, Indices j)
       : kernel_(kernel), relation_(relation), i_(i), j_(j), r_ij_(x_i - gather_vec<D>(x_of_neighbours, j)) {
     // Coincident particles have no direction: the limit makes e = 0 there, not NaN.
     r_ = sqrt(max(R(1e-200), squared_norm(r_ij_)));
@@ -184,7 +185,8 @@ class PairOperator : public OperatorBase {
     const double* x_of_neighbours = position_.of_neighbours(k);
     if constexpr (std::is_same_v<R, double>) {
       for (std::uint32_t m = 0; m < n; ++m)
-        pair_loop::add_lanes(sum, self().pair(Pair<D, R, Kernel>(kernel, k, i, x_i, x_of_neighbours, row[m])), true);
+        pair_loop::add_lanes(sum, self().pair(Pair<D, R, Kernel>(kernel, k, i, x_i, x_of_neighbours, row[m])),
+                             true);
     } else {
       for (std::uint32_t m = 0; m < n; m += lanes) {
         const Pair<D, R, Kernel> p(kernel, k, i, x_i, x_of_neighbours, IndexPack::load(row + m));

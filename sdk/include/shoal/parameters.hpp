@@ -140,7 +140,8 @@ class ParameterBase {
 
  protected:
   ParameterBase() = default;
-  inline void enrol(const char* key, const char* unit, const char* doc, std::uint32_t kind, std::uint32_t flags);
+  inline void enrol(const char* key, const char* unit, const char* doc, std::uint32_t kind,
+                    std::uint32_t flags);
   void apply(const Bound& bound) {
     description_.flags |= bound.flags;
     if (bound.flags & SHOAL_PARAMETER_HAS_MINIMUM) description_.minimum = bound.minimum;

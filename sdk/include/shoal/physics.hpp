@@ -63,7 +63,8 @@ class Builder {
   }
 
   void loop(const char* name, std::initializer_list<const char*> stages) const {
-    check_host(c_.loop(c_.context, name, nullptr, nullptr, static_cast<std::uint32_t>(stages.size()), stages.begin()));
+    check_host(c_.loop(c_.context, name, nullptr, nullptr, static_cast<std::uint32_t>(stages.size()),
+                       stages.begin()));
   }
   void loop(const char* name, At parent, std::initializer_list<const char*> stages) const {
     check_host(c_.loop(c_.context, name, parent.loop, parent.stage, static_cast<std::uint32_t>(stages.size()),
@@ -155,13 +156,15 @@ class OperatorPhysics {
 
  private:
   struct Own : Parameterised {
-    Param<std::vector<BodyIndex>> bodies{"bodies", nullptr, "Bodies that the operator works on.", example("[water]")};
+    Param<std::vector<BodyIndex>> bodies{"bodies", nullptr, "Bodies that the operator works on.",
+                                         example("[water]")};
     Param<std::vector<BodyIndex>> neighbours{
-        "neighbours", nullptr, "Bodies whose particles count as neighbours; without it the body itself.", optional,
-        example("[water, tank]")};
-    Param<std::string> at{"at", nullptr,
-                          "Loop and stage in which it runs; without it, where the field that it adds to is summed up.",
-                          optional, example("advection/forces")};
+        "neighbours", nullptr, "Bodies whose particles count as neighbours; without it the body itself.",
+        optional, example("[water, tank]")};
+    Param<std::string> at{
+        "at", nullptr,
+        "Loop and stage in which it runs; without it, where the field that it adds to is summed up.",
+        optional, example("advection/forces")};
   };
 
   static void build(const shoal_object& object, const Builder& builder) {

@@ -117,7 +117,8 @@ class Plugin {
   void licence(const char* spdx) { c_.licence = spdx; }
   void summary(const char* line) { c_.summary = line; }
   void citation(const char* text) { c_.citation = text; }
-  void requires_plugin(const char* id, const char* minimum_version = nullptr, const char* below_version = nullptr) {
+  void requires_plugin(const char* id, const char* minimum_version = nullptr,
+                       const char* below_version = nullptr) {
     requirements_.push_back({sizeof(shoal_requirement), 0, id, minimum_version, below_version});
   }
 
@@ -163,17 +164,17 @@ inline const shoal_plugin* enter_plugin(const shoal_host* host, Plugin& plugin) 
 }  // namespace impl
 }  // namespace shoal
 
-#define SHOAL_PLUGIN(plugin_id, plugin_version)                                                             \
-  namespace {                                                                                               \
-  struct ShoalPlugin final : shoal::Plugin {                                                                \
-    ShoalPlugin() : shoal::Plugin(#plugin_id, plugin_version) {}                                            \
-    void describe() override;                                                                               \
-  };                                                                                                        \
-  }                                                                                                         \
-  extern "C" SHOAL_EXPORT const shoal_stamp shoal_plugin_stamp;                                             \
-  extern "C" constexpr shoal_stamp shoal_plugin_stamp = shoal::impl::make_stamp();                        \
-  extern "C" SHOAL_EXPORT const shoal_plugin* shoal_plugin_entry(const shoal_host* host) {                  \
-    static ShoalPlugin plugin;                                                                              \
-    return shoal::impl::enter_plugin(host, plugin);                                                       \
-  }                                                                                                         \
+#define SHOAL_PLUGIN(plugin_id, plugin_version)                                            \
+  namespace {                                                                              \
+  struct ShoalPlugin final : shoal::Plugin {                                               \
+    ShoalPlugin() : shoal::Plugin(#plugin_id, plugin_version) {}                           \
+    void describe() override;                                                              \
+  };                                                                                       \
+  }                                                                                        \
+  extern "C" SHOAL_EXPORT const shoal_stamp shoal_plugin_stamp;                            \
+  extern "C" constexpr shoal_stamp shoal_plugin_stamp = shoal::impl::make_stamp();         \
+  extern "C" SHOAL_EXPORT const shoal_plugin* shoal_plugin_entry(const shoal_host* host) { \
+    static ShoalPlugin plugin;                                                             \
+    return shoal::impl::enter_plugin(host, plugin);                                        \
+  }                                                                                        \
   void ShoalPlugin::describe()

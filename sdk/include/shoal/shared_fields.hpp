@@ -25,9 +25,10 @@ inline constexpr std::array shared_fields{
     SharedField{"reference_position", SHOAL_RANK_VECTOR, "m", "Position in the reference configuration."},
     SharedField{"displacement", SHOAL_RANK_VECTOR, "m", "Position less reference position."},
     SharedField{"velocity", SHOAL_RANK_VECTOR, "m/s", "Velocity."},
-    SharedField{"acceleration", SHOAL_RANK_VECTOR, "m/s2",
-                "Acceleration by everything that acts on a particle but its own internal forces (gravity, viscosity, "
-                "contact, loads); operators add to it."},
+    SharedField{
+        "acceleration", SHOAL_RANK_VECTOR, "m/s2",
+        "Acceleration by everything that acts on a particle but its own internal forces (gravity, viscosity, "
+        "contact, loads); operators add to it."},
     SharedField{"force", SHOAL_RANK_VECTOR, "N", "Force of other bodies on a particle."},
     SharedField{"mass", SHOAL_SCALAR, "kg", "Mass."},
     SharedField{"volume", SHOAL_SCALAR, "m3", "Volume; set to spacing^dimensions at the start."},

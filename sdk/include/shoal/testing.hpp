@@ -80,8 +80,10 @@ inline Rows all_pairs(Body& own, Body& other, double cutoff) {
     rows.offsets.push_back(rows.indices.size());
     for (std::size_t j = 0; j < other.size(); ++j) {
       double squared = 0;
-      for (std::size_t a = 0; a < d; ++a) squared += (x[i * d + a] - y[j * d + a]) * (x[i * d + a] - y[j * d + a]);
-      if (squared < cutoff * cutoff && !(&own == &other && i == j)) rows.indices.push_back(static_cast<std::uint32_t>(j));
+      for (std::size_t a = 0; a < d; ++a)
+        squared += (x[i * d + a] - y[j * d + a]) * (x[i * d + a] - y[j * d + a]);
+      if (squared < cutoff * cutoff && !(&own == &other && i == j))
+        rows.indices.push_back(static_cast<std::uint32_t>(j));
     }
     rows.counts.push_back(static_cast<std::uint32_t>(rows.indices.size() - rows.offsets.back()));
     while (rows.indices.size() % SHOAL_PADDING != 0) rows.indices.push_back(rows.indices.back());
@@ -91,7 +93,10 @@ inline Rows all_pairs(Body& own, Body& other, double cutoff) {
 
 inline std::uint32_t components_of(std::uint32_t rank, int dimensions) {
   const auto d = static_cast<std::uint32_t>(dimensions);
-  return rank == SHOAL_SCALAR ? 1 : rank == SHOAL_RANK_VECTOR ? d : rank == SHOAL_SYMMETRIC ? d * (d + 1) / 2 : d * d;
+  return rank == SHOAL_SCALAR        ? 1
+         : rank == SHOAL_RANK_VECTOR ? d
+         : rank == SHOAL_SYMMETRIC   ? d * (d + 1) / 2
+                                     : d * d;
 }
 
 template <class Op>
@@ -123,7 +128,8 @@ void run(Op& op, Body& own, std::vector<Body*> neighbours, const Setup& setup) {
   std::vector<shoal_field> mine, theirs;
   const auto view = [](Body& body, const shoal_access& access) {
     const std::uint32_t components = impl::components_of(access.rank, body.dimensions());
-    return shoal_field{sizeof(shoal_field), components, body.data(access.field, components), body.size(), body.size()};
+    return shoal_field{sizeof(shoal_field), components, body.data(access.field, components), body.size(),
+                       body.size()};
   };
   for (const shoal_access& access : accesses) mine.push_back(view(own, access));
   std::vector<impl::Rows> rows;
@@ -133,8 +139,8 @@ void run(Op& op, Body& own, std::vector<Body*> neighbours, const Setup& setup) {
     rows.push_back(impl::all_pairs(own, *body, target.cutoff));
   }
   for (const impl::Rows& row : rows)
-    lists.push_back({sizeof(shoal_neighbours), 0, row.offsets.data(), row.counts.data(), row.indices.data(), own.size(),
-                     target.cutoff});
+    lists.push_back({sizeof(shoal_neighbours), 0, row.offsets.data(), row.counts.data(), row.indices.data(),
+                     own.size(), target.cutoff});
   op.bind({sizeof(shoal_binding), own.dimensions(), own.size(), mine.data(), lists.data(), theirs.data()});
   if constexpr (requires { op.bound(); }) op.bound();
 
@@ -153,7 +159,8 @@ void run(Op& op, Body& own, std::vector<Body*> neighbours, const Setup& setup) {
                                               : -std::numeric_limits<double>::infinity());
   const std::uint64_t middle = own.size() / 2;
   impl::run_chunk(op, own.dimensions(), {sizeof(shoal_chunk), 0, 0, middle, partials.data()}, setup.scalar);
-  impl::run_chunk(op, own.dimensions(), {sizeof(shoal_chunk), 1, middle, own.size(), partials.data()}, setup.scalar);
+  impl::run_chunk(op, own.dimensions(), {sizeof(shoal_chunk), 1, middle, own.size(), partials.data()},
+                  setup.scalar);
   op.set_results(partials.data());
   if constexpr (requires { op.end(); }) op.end();
 }

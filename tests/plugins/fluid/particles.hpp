@@ -18,8 +18,8 @@ using shoal::testing::Body;
 using shoal::testing::Setup;
 
 // Lattice points (k + 1/2) dx inside [lower, upper), moved by up to `jitter` dx in each direction.
-inline std::vector<double> lattice(int dimensions, double dx, std::vector<double> lower, std::vector<double> upper,
-                                   double jitter = 0.0) {
+inline std::vector<double> lattice(int dimensions, double dx, std::vector<double> lower,
+                                   std::vector<double> upper, double jitter = 0.0) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform(-jitter * dx, jitter * dx);
   const auto d = static_cast<std::size_t>(dimensions);
@@ -47,8 +47,9 @@ inline double plain_dw(int dimensions, double h, double r) {
 }
 
 // For every i, calls visit(i, j, r, e_ij) for all neighbours j.
-inline void for_all_pairs(Body& own, Body& other, double cutoff,
-                          const std::function<void(std::size_t, std::size_t, double, const std::vector<double>&)>& visit) {
+inline void for_all_pairs(
+    Body& own, Body& other, double cutoff,
+    const std::function<void(std::size_t, std::size_t, double, const std::vector<double>&)>& visit) {
   const auto d = static_cast<std::size_t>(own.dimensions());
   const auto &x = own["position"], &y = other["position"];
   for (std::size_t i = 0; i < own.size(); ++i)
