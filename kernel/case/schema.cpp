@@ -49,9 +49,15 @@ shoal_value default_value(const shoal_parameter& parameter, const shoal_type& ty
   return read_value(node, parameter, SHOAL_ORIGIN_DEFAULT, context);
 }
 
+std::string article(const std::string& word) {
+  return word == "physics" ? "" : std::string("aeiou").find(word[0]) != std::string::npos ? "an " : "a ";
+}
+
 }  // namespace
 
 std::string TypeCatalogue::explain_unknown(shoal_type_kind /*kind*/, const std::string& /*name*/) const { return {}; }
+
+bool TypeCatalogue::is_excused(const std::string& /*name*/) const { return false; }
 
 const char* const* ObjectStore::texts(const std::vector<std::string>& v) {
   std::vector<const char*> pointers;
@@ -141,6 +147,9 @@ const shoal_object* read_named_object(const std::string& name, const Place& name
                                       shoal_type_kind kind, const SchemaContext& context) {
   const TypeEntry type = context.types.find(kind, name);
   if (type) return read_object(values, type, name_place, context);
+  if (context.types.is_excused(name)) {
+    return nullptr;
+  }
   const std::vector<std::string> names = context.types.names(kind);
   std::string explanation = context.types.explain_unknown(kind, name);
   const std::string suggestion = did_you_mean(name, names);
@@ -151,7 +160,7 @@ const shoal_object* read_named_object(const std::string& name, const Place& name
     message += "; " + explanation;
   } else {
     message += suggestion;
-    if (names.empty()) notes.push_back("no plugin that this case lists has a " + type_kind_name(kind));
+    if (names.empty()) notes.push_back("no plugin that this case lists has " + type_kind_plural(kind));
   }
   context.diagnostics.error(name_place, message, notes);
   return nullptr;
@@ -161,7 +170,7 @@ const shoal_object* read_typed_object(const Node& node, shoal_type_kind kind, co
   const std::string name = type_kind_name(kind);
   if (node.is_scalar()) return read_named_object(node.text(), node.place(), Node(), kind, context);
   if (!node.is_map()) {
-    context.diagnostics.error(node.place(), "expected a " + name + ", got " + node.described(),
+    context.diagnostics.error(node.place(), "expected " + article(name) + name + ", got " + node.described(),
                               {"write 'type' or '{type: {key: value}}'; " + type_kind_plural(kind) + ": " +
                                join(context.types.names(kind))});
     return nullptr;

@@ -37,6 +37,8 @@ class TypeCatalogue {
   /// What is known of a name that is not there: a sentence without a full stop such as "it is in the plugin
   /// 'solid'; add it to 'plugins'", or empty.
   virtual std::string explain_unknown(shoal_type_kind kind, const std::string& name) const;
+  /// Whether nothing need be said of an unknown name, because its reason was reported already.
+  virtual bool is_excused(const std::string& name) const;
 };
 
 /// Owns the values of a case, and everything that they point to, at addresses that stay.

@@ -11,6 +11,8 @@
 
 #include "kernel/case/overrides.hpp"
 #include "kernel/case/scalars.hpp"
+#include "kernel/case/sections.hpp"
+#include "shoal/shared_fields.hpp"
 
 namespace shoal::kernel {
 namespace {
@@ -42,14 +44,22 @@ class ValueReader {
     if ((parameter_.flags & SHOAL_PARAMETER_LIST) != 0 && node.is_sequence() &&
         (node.items().empty() || depth_of(node) > depth_of(parameter_.kind)))
       elements = node.items();
-    for (const Node& element : elements) read_element(element);
+    if (parameter_.kind == kind_number_map) {
+      read_number_map(node, elements);
+    } else if (parameter_.kind == kind_field_map) {
+      read_field_map(node, elements);
+    } else if (!is_read_by_model()) {
+      for (const Node& element : elements) read_element(element);
+    } else {
+      elements.clear();
+    }
 
     shoal_value value{};
     value.size = sizeof(shoal_value);
     value.kind = parameter_.kind;
     value.origin = origin;
     value.place = context_.store.text(node.place().text());
-    if (context_.diagnostics.n_errors() > before) return value;
+    if (failed_ || context_.diagnostics.n_errors() > before) return value;
     value.n = static_cast<std::uint32_t>(elements.size());
     if (!reals_.empty()) value.reals = context_.store.reals(std::move(reals_));
     if (!integers_.empty()) value.integers = context_.store.integers(std::move(integers_));
@@ -63,6 +73,9 @@ class ValueReader {
   void error(const Place& place, const std::string& message, std::vector<std::string> notes = {}) const {
     context_.diagnostics.error(place, message, std::move(notes));
   }
+
+  // There is no value, and its reason was reported, perhaps elsewhere (a broken parameter, a missing plugin).
+  void fail() { failed_ = true; }
 
   void read_element(const Node& node) {
     switch (parameter_.kind) {
@@ -84,6 +97,65 @@ class ValueReader {
     }
   }
 
+  bool is_read_by_model() const {
+    return parameter_.kind == kind_parameters || parameter_.kind == kind_section ||
+           parameter_.kind == kind_named_items || parameter_.kind == kind_listed_items;
+  }
+
+  // Leaves one element for each entry.
+  std::vector<Node::Entry> entries_of(const Node& node, const std::string& what, std::vector<Node>& elements) const {
+    elements.clear();
+    std::vector<Node::Entry> entries;
+    if (!node.is_map()) {
+      std::vector<std::string> notes;
+      if (parameter_.example != nullptr) notes.push_back(std::string("example: ") + parameter_.key + ": " + parameter_.example);
+      error(node.place(), "expected a map of " + what + ", got " + node.described(), notes);
+      return entries;
+    }
+    for (const Node::Entry& entry : node.entries()) {
+      if (is_note(entry.key)) continue;
+      entries.push_back(entry);
+      elements.push_back(entry.value);
+    }
+    return entries;
+  }
+
+  void read_number_map(const Node& node, std::vector<Node>& elements) {
+    for (const Node::Entry& entry : entries_of(node, "names and numbers", elements)) {
+      texts_.push_back(entry.key);
+      real(entry.value);
+    }
+  }
+
+  void read_field_map(const Node& node, std::vector<Node>& elements) {
+    for (const Node::Entry& entry : entries_of(node, "fields and their values", elements)) {
+      if (!is_field_name(entry.key) || entry.key.find('.') != std::string::npos) {
+        error(entry.key_place, "'" + entry.key + "' is not the name of a field");
+        continue;
+      }
+      const SharedField* shared = find_shared_field(entry.key);
+      request_.unit = shared != nullptr ? shared->unit.data() : nullptr;
+      const std::vector<Node> items = entry.value.is_sequence() ? entry.value.items() : std::vector<Node>{entry.value};
+      if (shared != nullptr) check_components(entry, *shared, items.size());
+      texts_.push_back(entry.key);
+      integers_.push_back(static_cast<std::int64_t>(items.size()));
+      for (const Node& item : items) expression(item);
+    }
+  }
+
+  void check_components(const Node::Entry& entry, const SharedField& field, std::size_t n) const {
+    const auto d = static_cast<std::size_t>(context_.dimensions);
+    const std::size_t expected = field.rank == SHOAL_SCALAR        ? 1
+                                 : field.rank == SHOAL_RANK_VECTOR ? d
+                                 : field.rank == SHOAL_SYMMETRIC   ? d * (d + 1) / 2
+                                                                   : d * d;
+    if (n == expected || d == 0) return;
+    const std::string wanted = expected == 1 ? "one number or expression" : "a list of " + std::to_string(expected) +
+                                                                                " numbers or expressions";
+    error(entry.value.place(), "expected " + wanted + " for the field '" + entry.key + "', got " +
+                                   (entry.value.is_sequence() ? "a list of " + std::to_string(n) : entry.value.described()));
+  }
+
   void boolean(const Node& node) {
     const BooleanText meaning = node.is_scalar() ? parse_boolean(node.text()) : BooleanText::not_boolean;
     const bool is_word = meaning == BooleanText::yes || meaning == BooleanText::no;
@@ -102,7 +174,7 @@ class ValueReader {
   void integer(const Node& node) {
     if (!node.is_scalar()) return error(node.place(), "expected a whole number, got " + node.described());
     const std::optional<double> value = read_number(node, {nullptr, false}, context_.parameters, context_.diagnostics);
-    if (!value) return;
+    if (!value) return fail();
     if (*value != std::round(*value) || std::fabs(*value) > 9007199254740992.0) {
       const bool literal = parse_number(node.text()).status == NumberText::Status::number;
       return error(node.place(), "expected a whole number, got " +
@@ -113,18 +185,20 @@ class ValueReader {
 
   void real(const Node& node) {
     const std::optional<double> value = read_number(node, request_, context_.parameters, context_.diagnostics);
-    if (value && inside_bounds(*value, node)) reals_.push_back(*value);
+    if (!value) return fail();
+    if (inside_bounds(*value, node)) reals_.push_back(*value);
   }
 
   // Items of a list with as many as there are dimensions. Defaults are written for three.
   std::vector<Node> components(const Node& node, const std::string& what) const {
-    const auto n = static_cast<std::size_t>(context_.dimensions);
     const std::string expected = "expected " + what;
     if (!node.is_sequence()) {
       error(node.place(), expected + ", got " + node.described());
       return {};
     }
     std::vector<Node> items = node.items();
+    // Without (valid) dimensions the case is wrong anyway; nothing is known of lengths then.
+    const auto n = context_.dimensions == 0 ? items.size() : static_cast<std::size_t>(context_.dimensions);
     if (is_default(node.place()) && items.size() > n) items.resize(n);
     if (items.size() == n) return items;
     error(node.place(), expected + ", got a list of " + std::to_string(items.size()),
@@ -132,7 +206,9 @@ class ValueReader {
     return {};
   }
 
-  std::string list_of(const std::string& what) const { return "a list of " + std::to_string(context_.dimensions) + what; }
+  std::string list_of(const std::string& what) const {
+    return "a list of " + (context_.dimensions == 0 ? "2 or 3" : std::to_string(context_.dimensions)) + what;
+  }
 
   void vector(const Node& node) {
     for (const Node& item : components(node, list_of(" numbers"))) real(item);
@@ -170,7 +246,8 @@ class ValueReader {
     static const std::vector<std::string> space{"x", "y", "z", "t"};
     const std::optional<Expression> read = read_expression(node, request_, context_.dimensions == 2 ? plane : space,
                                                            context_.parameters, context_.diagnostics);
-    if (read && (!read->is_constant() || inside_bounds(read->value(), node))) expressions_.push_back(*read);
+    if (!read) return fail();
+    if (!read->is_constant() || inside_bounds(read->value(), node)) expressions_.push_back(*read);
   }
 
   void vector_expression(const Node& node) {
@@ -212,7 +289,8 @@ class ValueReader {
   void object(const Node& node) {
     const shoal_object* read =
         read_typed_object(node, static_cast<shoal_type_kind>(parameter_.object_kind), context_);
-    if (read != nullptr) objects_.push_back(read);
+    if (read == nullptr) return fail();
+    objects_.push_back(read);
   }
 
   bool inside_bounds(double value, const Node& node) const {
@@ -237,6 +315,7 @@ class ValueReader {
   const shoal_parameter& parameter_;
   const SchemaContext& context_;
   NumberRequest request_;
+  bool failed_ = false;
   std::vector<double> reals_;
   std::vector<std::int64_t> integers_;
   std::vector<std::string> texts_;
