@@ -210,15 +210,19 @@ bool Simulation::is_declared(std::string_view body, std::string_view field) cons
   const std::optional<std::uint32_t> index = find_body(body);
   if (!index) return false;
   if (implementation_->bodies[*index]->find(field) != nullptr) return true;
-  const Declarations& said = implementation_->declarations;
-  return said.find_owner(*index, std::string(field)) != nullptr ||
-         std::any_of(said.attachments.begin(), said.attachments.end(), [&](const Attachment& attachment) {
-           return attachment.body() == *index &&
-                  std::any_of(attachment.accesses.begin(), attachment.accesses.end(), [&](const Access& access) {
-                    return access.field == field && !access.has(SHOAL_NOT_OWN) &&
-                           (access.changes() || !access.has(SHOAL_OPTIONAL));
-                  });
-         });
+  const auto names_it = [&](const Attachment& attachment, const Access& access) {
+    if (access.field != field || access.has(SHOAL_OPTIONAL)) return false;
+    if (attachment.on_demand() && !access.changes()) return false;
+    if (!access.has(SHOAL_NOT_OWN) && attachment.body() == *index) return true;
+    return access.has(SHOAL_OF_NEIGHBOURS) &&
+           std::any_of(attachment.relations.begin(), attachment.relations.end(),
+                       [&](const shoal_relation_request& relation) { return relation.body == *index; });
+  };
+  const std::vector<Attachment>& all = implementation_->declarations.attachments;
+  return std::any_of(all.begin(), all.end(), [&](const Attachment& attachment) {
+    return std::any_of(attachment.accesses.begin(), attachment.accesses.end(),
+                       [&](const Access& access) { return names_it(attachment, access); });
+  });
 }
 
 void Simulation::finalise() { implementation_->finalise(); }
