@@ -10,14 +10,20 @@
 // its jump in v*) in PressureForce, those of the velocity in VelocityDivergence.
 //
 // The pressure jump dissipates what gravity balances, too: at a free surface sum_j V_j (p_i - p_j) W' of a
-// hydrostatic field is not zero, and the density drifts. The jump is therefore that of the pressure less its
-// hydrostatic part, p_i - p_j - rho0 a.r_ij with a the acceleration by everything but pressure (compare the
-// density diffusion of Fourtakas et al. 2019).
+// hydrostatic field is not zero, and the density drifts. What the acceleration a by everything but pressure explains
+// of the jump, rho0 a.r_ij, is therefore taken off (compare the density diffusion of Fourtakas et al. 2019), but never
+// more than the jump itself: water in free fall has the acceleration without the pressure.
 #pragma once
 
 #include "shoal/pair_operator.hpp"
 
 namespace shoal::fluid {
+
+// The smaller of two numbers of one sign, 0 if their signs differ.
+template <class A, class B>
+auto minmod(const A& a, const B& b) {
+  return max(0.0, min(a, b)) + min(0.0, max(a, b));
+}
 
 // The pressure's part: acceleration, and the dissipation of pressure jumps in the continuity equation.
 struct PressureForce : PairOperator<PressureForce> {
@@ -36,8 +42,9 @@ struct PressureForce : PairOperator<PressureForce> {
   auto pair(const auto& p) const {
     const auto weight = p.j(volume) * p.dW_over_r();
     const auto hydrostatic = reference_density * dot(p.i(acceleration), p.r_ij());
-    const auto jump = p.i(pressure) - p.j(pressure) - hydrostatic;
-    return sums((weight * (p.i(pressure) + p.j(pressure))) * p.r_ij(), weight * p.r() * jump);
+    const auto jump = p.i(pressure) - p.j(pressure);
+    return sums((weight * (p.i(pressure) + p.j(pressure))) * p.r_ij(),
+                weight * p.r() * (jump - minmod(jump, hydrostatic)));
   }
   void particle(auto i, auto force, auto dissipation) const {
     pressure_acceleration[i] -= (gradient_scale / density[i]) * force;
