@@ -29,7 +29,7 @@ struct PointParameters : Parameterised {
   Param<std::vector<std::string>> of{"of", nullptr,
                                      "What: a field or its part, or an expression as for maximum. Several give as many "
                                      "columns.",
-                                     example("pressure")};
+                                     example("velocity.magnitude")};
   Param<std::vector<BodyIndex>> body{"body", nullptr, "Body or bodies whose particles are interpolated.",
                                      example("water")};
   Param<VectorExpression> at{"at", "m", "The point; it moves if its coordinates are expressions of t.",
@@ -38,7 +38,7 @@ struct PointParameters : Parameterised {
                         "Share of the smoothing kernel that particles must fill for there to be a value; with less it "
                         "is NaN. 1 inside a body, 0.5 at a flat surface.",
                         between(0, 1), default_to(0.05), example("0.25")};
-  Param<std::string> unit{"unit", nullptr, "Unit of the result, for the head of the table.", optional, example("Pa")};
+  Param<std::string> unit{"unit", nullptr, "Unit of the result, for the head of the table.", optional, example("m/s")};
 };
 
 std::unique_ptr<Probe> make_reduction(Reduce how, const shoal_object& object, const ProbeContext& context);
