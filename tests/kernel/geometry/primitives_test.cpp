@@ -158,18 +158,17 @@ TEST_CASE("half space") {
 }
 
 TEST_CASE("the default normal of a shape comes from differences, and survives ridges") {
-  class Slab final : public Shape {  // |x| < 1, no normal of its own
+  class Slab final : public Shape {  // |y| < 1, no normal of its own
    public:
-    double signed_distance(const Point& p) const override { return std::abs(p[0]) - 1.0; }
-    Box bounds() const override { return {{-1, -infinity, -infinity}, {1, infinity, infinity}}; }
+    double signed_distance(const Point& p) const override { return std::abs(p[1]) - 1.0; }
+    Box bounds() const override { return {{-infinity, -1, -infinity}, {infinity, 1, infinity}}; }
   };
   const Slab slab;
-  CHECK(slab.normal({0.3, 2, 1})[0] == doctest::Approx(1.0));
-  CHECK(slab.normal({-5.0, 2, 1})[0] == doctest::Approx(-1.0));
-  const Point on_the_ridge = slab.normal({0, 0, 0});
-  CHECK(std::abs(on_the_ridge[0]) == doctest::Approx(1.0));
-  CHECK(slab.contains({1, 0, 0}));
-  CHECK_FALSE(slab.contains({1.001, 0, 0}));
+  CHECK(slab.normal({2, 0.3, 1})[1] == doctest::Approx(1.0));
+  CHECK(slab.normal({2, -5.0, 1})[1] == doctest::Approx(-1.0));
+  CHECK(std::abs(slab.normal({0, 0, 0})[1]) == doctest::Approx(1.0));  // on the ridge
+  CHECK(slab.contains({0, 1, 0}));
+  CHECK_FALSE(slab.contains({0, 1.001, 0}));
 }
 
 TEST_CASE("primitives refuse what they cannot be") {

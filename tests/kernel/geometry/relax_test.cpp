@@ -187,7 +187,7 @@ TEST_CASE("relaxation: quality by sweeps in a periodic box") {
         MESSAGE(dimension << "D, " << sweeps << " sweeps: spread " << report.displaced.spread << " to "
                           << report.relaxed.spread << " (factor " << factor << "), rms " << report.relaxed.rms
                           << ", largest " << report.relaxed.largest << ", closest "
-                          << report.relaxed.closest_pair);
+                          << report.displaced.closest_pair << " to " << report.relaxed.closest_pair);
         CHECK(report.displaced.spread > 0.04);  // it was disordered indeed
         if (sweeps == 5) CHECK(factor > 6.0);
         if (sweeps == 10) CHECK(factor > 10.0);
@@ -337,6 +337,38 @@ TEST_CASE("relaxation: a channel, periodic along x between walls, with and witho
   const RelaxReport report = relax(points, parameters);
   CHECK(parameters.fixed == wall_before);
   CHECK(report.relaxed.spread < 0.1 * report.displaced.spread);
+}
+
+TEST_CASE("relaxation: far moves into a void do not outrun the list of pairs") {
+  const int n = 24;
+  auto points = fill_lattice(*unit_box(2), 1.0 / n, 2);
+  points.resize(points.size() / 2);  // the upper half is empty
+  auto parameters = periodic(2, n);
+  parameters.sweeps = 60;
+  parameters.tolerance = 0.0;
+  const auto before = points;
+  const RelaxReport report = relax(points, parameters);
+  double furthest = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point moved = parameters.domain.shortest(point::minus(points[i], before[i]));
+    furthest = std::max(furthest, point::length(moved) * n);
+  }
+  CHECK(furthest > 2.0);
+  CHECK(report.relaxed.rms == doctest::Approx(measure_uniformity(points, parameters).rms).epsilon(1e-12));
+}
+
+TEST_CASE(
+    "relaxation: large displacements stay inside a needle, where a mirror image may lie outside again") {
+  const ShapePtr needle =
+      std::make_shared<Polygon>(Polygon::Parameters{{{0, -0.065, 0}, {1, 0.01, 0}, {0, 0.085, 0}}});
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    RelaxParameters parameters = within(needle, 2, 0.02);
+    parameters.displacement = 0.5;
+    parameters.seed = seed;
+    auto points = fill_lattice(*needle, 0.02, 2);
+    relax(points, parameters);
+    for (const Point& p : points) REQUIRE(needle->signed_distance(p) <= 0.0);
+  }
 }
 
 TEST_CASE("relaxation in 3D between walls") {
