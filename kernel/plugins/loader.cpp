@@ -66,7 +66,7 @@ const LoadedPlugin& Loader::load_new(const std::string& id, std::vector<std::str
   if (!is_snake_case(id))
     throw LoadFailure(
         LoadProblem::bad_id, id, {}, "'" + id + "' cannot be the name of a plugin",
-        {"a plugin is asked for by its id, a word such as fluid; folders to search are named with "
+        {"a plugin is asked for by its id, a word such as vtk; folders to search are named with "
          "--plugin-path or SHOAL_PLUGIN_PATH"});
   const auto path = search_path_.find(id);
   if (!path) throw not_found(id);
