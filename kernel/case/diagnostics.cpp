@@ -89,6 +89,28 @@ ShownLine show(const std::string& line, int column, int length) {
   return shown;
 }
 
+// Long lists of keys go on below, indented further.
+std::string wrapped_note(const std::string& note) {
+  constexpr std::size_t width = 104;
+  std::string text;
+  std::string indent = "      ";
+  std::size_t begin = 0;
+  while (begin < note.size()) {
+    std::size_t end = note.size();
+    if (indent.size() + end - begin > width) {
+      const std::size_t space = note.rfind(' ', begin + width - indent.size());
+      if (space != std::string::npos && space > begin) end = space;
+    }
+    std::size_t last = end;
+    while (last > begin && note[last - 1] == ' ') --last;
+    text += indent + note.substr(begin, last - begin) + "\n";
+    begin = note.find_first_not_of(' ', end);
+    if (begin == std::string::npos) break;
+    indent = "            ";
+  }
+  return text;
+}
+
 std::string plural(std::size_t n, const std::string& word) {
   return std::to_string(n) + " more " + word + (n == 1 ? "" : "s");
 }
@@ -176,7 +198,7 @@ std::string format(const Diagnostic& item) {
     text += std::string(number.size(), ' ') + " | " + std::string(static_cast<std::size_t>(shown.begin), ' ') + "^" +
             std::string(static_cast<std::size_t>(shown.width) - 1, '~') + "\n";
   }
-  for (const std::string& note : item.notes) text += "      " + note + "\n";
+  for (const std::string& note : item.notes) text += wrapped_note(note);
   return text;
 }
 

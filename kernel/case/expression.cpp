@@ -219,7 +219,7 @@ class Scanner {
     if (std::find(variable_names.begin(), variable_names.end(), word) != variable_names.end()) {
       if (scope_.variables.empty())
         fail("'" + word + "' cannot stand here: this value is the same everywhere and always", offset, length);
-      if (word != "t") fail("'" + word + "' does not exist in this number of dimensions", offset, length);
+      if (word != "t") fail("'" + word + "' does not exist in two dimensions", offset, length);
       fail("'t' cannot stand here: this value does not change in time", offset, length);
     }
     std::vector<std::string> known = scope_.constants;

@@ -145,8 +145,8 @@ class Override {
   std::optional<Node> in_item(const Node& sequence, std::size_t at, std::size_t index) const {
     std::vector<Node> items = sequence.items();
     if (index >= items.size()) {
-      fail("the list '" + joined(words_, 0, at) + "' has no item " + words_[at] + "; its " +
-           std::to_string(items.size()) + " items count from 0");
+      fail("the list '" + joined(words_, 0, at) + "' has no item " + words_[at] + "; it has " +
+           std::to_string(items.size()) + ", counted from 0");
       return std::nullopt;
     }
     std::optional<Node> item = apply(items[index], at + 1);

@@ -32,6 +32,14 @@ shoal_value not_set(const shoal_parameter& parameter, const char* place) {
   return value;
 }
 
+// A key that is there under a misspelt name was complained about already.
+bool is_misspelt(const Node& map, const char* key, const std::vector<std::string>& known) {
+  return std::any_of(map.entries().begin(), map.entries().end(), [&](const Node::Entry& entry) {
+    return !is_note(entry.key) && std::find(known.begin(), known.end(), entry.key) == known.end() &&
+           closest(entry.key, known) == key;
+  });
+}
+
 void report_missing(const shoal_parameter& parameter, const shoal_type& type, const Place& place,
                     Diagnostics& diagnostics) {
   std::vector<std::string> notes;
@@ -135,7 +143,8 @@ const shoal_object* read_object(const Node& values, const TypeEntry& type, const
     } else if (parameter.default_text != nullptr) {
       result.push_back(default_value(parameter, table, context));
     } else {
-      if ((parameter.flags & SHOAL_PARAMETER_REQUIRED) != 0 && (values.is_map() || values.is_null()))
+      if ((parameter.flags & SHOAL_PARAMETER_REQUIRED) != 0 && (values.is_map() || values.is_null()) &&
+          !is_misspelt(map, parameter.key, keys_of(table)))
         report_missing(parameter, table, place, context.diagnostics);
       result.push_back(not_set(parameter, context.store.text(place.text())));
     }

@@ -143,7 +143,8 @@ const std::vector<std::string>& common_units() {
   static const std::vector<std::string> units{
       "m",   "cm", "mm",  "km",   "um",   "kg",   "g",    "s",    "ms",  "us",   "min",   "h",   "day", "m/s", "m/s2",
       "Pa",  "kPa", "MPa", "GPa", "bar",  "atm",  "mmHg", "N",    "kN",  "J",    "W",     "K",   "degC", "Hz", "deg",
-      "rad", "rpm", "L",   "mL",  "mol",  "V",    "mV",   "A",    "S/m", "Pa s", "m2/s",  "kg/m3", "N/m", "%"};
+      "rad", "rpm", "L",   "mL",  "mol",  "V",    "mV",   "A",    "S/m", "Pa s", "m2/s",  "kg/m3", "N/m", "%", "metre", "meter", "second",
+      "minute", "hour", "kilogram", "gram", "pascal", "newton", "joule", "watt", "kelvin", "degree", "radian"};
   return units;
 }
 

@@ -29,10 +29,16 @@ int depth_of(const Node& node) {
   return 1 + (node.items().empty() ? 0 : depth_of(node.items().front()));
 }
 
+std::vector<std::string> shared_names() {
+  std::vector<std::string> names;
+  for (const SharedField& field : shared_fields) names.emplace_back(field.name);
+  return names;
+}
+
 class ValueReader {
  public:
   ValueReader(const shoal_parameter& parameter, const SchemaContext& context)
-      : parameter_(parameter), context_(context) {
+      : parameter_(parameter), context_(context), name_(parameter.key) {
     request_.unit = parameter.unit;
     const std::string text = parameter.default_text != nullptr ? parameter.default_text : "";
     request_.allow_infinite = text.find("inf") != std::string::npos;
@@ -123,14 +129,18 @@ class ValueReader {
   void read_number_map(const Node& node, std::vector<Node>& elements) {
     for (const Node::Entry& entry : entries_of(node, "names and numbers", elements)) {
       texts_.push_back(entry.key);
+      name_ = entry.key;
       real(entry.value);
     }
   }
 
   void read_field_map(const Node& node, std::vector<Node>& elements) {
     for (const Node::Entry& entry : entries_of(node, "fields and their values", elements)) {
-      if (!is_field_name(entry.key) || entry.key.find('.') != std::string::npos) {
-        error(entry.key_place, "'" + entry.key + "' is not the name of a field");
+      const std::size_t dot = entry.key.find('.');
+      if (!is_field_name(entry.key) || dot != std::string::npos) {
+        error(entry.key_place, dot == std::string::npos
+                                   ? "'" + entry.key + "' is not the name of a field" + did_you_mean(entry.key, shared_names())
+                                   : "give all components of '" + entry.key.substr(0, dot) + "' at once, as a list");
         continue;
       }
       const SharedField* shared = find_shared_field(entry.key);
@@ -165,7 +175,11 @@ class ValueReader {
       error(node.place(), "expected true or false, got a text; leave out the quotes");
     } else if (meaning == BooleanText::other_word) {
       error(node.place(), "expected true or false, got '" + node.text() +
-                              "'; other words for them are not read, since YAML readers disagree about them");
+                              "', which YAML readers disagree about; write " +
+                              (std::string_view("yYtToO").find(node.text()[0]) != std::string_view::npos &&
+                                       node.text() != "off" && node.text() != "Off" && node.text() != "OFF"
+                                   ? "true"
+                                   : "false"));
     } else {
       error(node.place(), "expected true or false, got " + node.described());
     }
@@ -268,7 +282,8 @@ class ValueReader {
   void field(const Node& node) {
     if (!node.is_scalar()) return error(node.place(), "expected the name of a field, got " + node.described());
     if (!is_field_name(node.text()))
-      return error(node.place(), "'" + node.text() + "' is not the name of a field",
+      return error(node.place(), "'" + node.text() + "' is not the name of a field" +
+                                     did_you_mean(node.text(), shared_names()),
                    {"write a field, e.g. velocity, or a component of it, e.g. velocity.x"});
     texts_.push_back(node.text());
   }
@@ -307,7 +322,7 @@ class ValueReader {
     const std::string bound = format_number(too_low ? parameter_.minimum : parameter_.maximum) + unit;
     const std::string relation = too_low ? (low_open ? "greater than " : "at least ") : (high_open ? "less than " : "at most ");
     const bool literal = parse_number(node.text()).status == NumberText::Status::number;
-    error(node.place(), "'" + std::string(parameter_.key) + "' must be " + relation + bound + ", got " +
+    error(node.place(), "'" + name_ + "' must be " + relation + bound + ", got " +
                             (literal ? node.text() : "'" + node.text() + "' = " + format_number(value)));
     return false;
   }
@@ -316,6 +331,7 @@ class ValueReader {
   const SchemaContext& context_;
   NumberRequest request_;
   bool failed_ = false;
+  std::string name_;  // of the value, for messages about bounds
   std::vector<double> reals_;
   std::vector<std::int64_t> integers_;
   std::vector<std::string> texts_;

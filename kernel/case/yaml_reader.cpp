@@ -637,7 +637,10 @@ Node read_yaml_file(const std::string& path, Diagnostics& diagnostics) {
 }
 
 Node read_yaml_value(const std::string& text, const Place& place, Diagnostics& diagnostics) {
-  return parse(Source(text, place.file(), place), diagnostics);
+  // As the value of a key: yaml-cpp takes an unclosed bracket at the top level for a key.
+  const Node root = parse(Source("value: " + text, place.file(), place), diagnostics);
+  const Node* value = root.is_map() ? root.find("value") : nullptr;
+  return value != nullptr ? *value : Node::null(place);
 }
 
 }  // namespace shoal::kernel
