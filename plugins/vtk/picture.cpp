@@ -39,7 +39,12 @@ struct Layout {
 };
 
 constexpr std::array<const char*, 3> vector_names{"X", "Y", "Z"};
-constexpr std::array<const char*, 9> matrix_names{"XX", "XY", "XZ", "YX", "YY", "YZ", "ZX", "ZY", "ZZ"};
+
+const char* matrix_name(int row, int column) {
+  constexpr std::array<std::array<const char*, 3>, 3> names{
+      {{"XX", "XY", "XZ"}, {"YX", "YY", "YZ"}, {"ZX", "ZY", "ZZ"}}};
+  return names[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+}
 
 void add_component(Layout& layout, const char* name, bool exists, int source) {
   const auto c = static_cast<std::size_t>(layout.array_components++);
@@ -59,13 +64,11 @@ Layout make_layout(std::uint32_t rank, int d) {
     // VTK's order; the field holds the upper triangle row by row.
     constexpr std::array<std::array<int, 2>, 6> order{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}};
     for (const auto& [a, b] : order)
-      add_component(layout, matrix_names[static_cast<std::size_t>(3 * a + b)], b < d,
-                    a * d - a * (a - 1) / 2 + b - a);
+      add_component(layout, matrix_name(a, b), b < d, a * d - a * (a - 1) / 2 + b - a);
   } else if (rank == SHOAL_RANK_MATRIX) {
     layout.field_components = d * d;
     for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b)
-        add_component(layout, matrix_names[static_cast<std::size_t>(3 * a + b)], a < d && b < d, a * d + b);
+      for (int b = 0; b < 3; ++b) add_component(layout, matrix_name(a, b), a < d && b < d, a * d + b);
   } else {
     throw std::invalid_argument("fields of rank " + std::to_string(rank) +
                                 " are not known to the vtk plugin");
@@ -123,11 +126,11 @@ vtkSmartPointer<vtkCellArray> make_vertices(std::uint64_t n) {
   auto vertices = vtkSmartPointer<vtkCellArray>::New();
   const auto fill = [&]<class Array>(vtkSmartPointer<Array> offsets, vtkSmartPointer<Array> points) {
     using Value = typename Array::ValueType;
-    offsets->SetNumberOfValues(static_cast<vtkIdType>(n + 1));
-    points->SetNumberOfValues(static_cast<vtkIdType>(n));
-    for (std::uint64_t i = 0; i <= n; ++i)
-      offsets->SetValue(static_cast<vtkIdType>(i), static_cast<Value>(i));
-    for (std::uint64_t i = 0; i < n; ++i) points->SetValue(static_cast<vtkIdType>(i), static_cast<Value>(i));
+    const auto count = static_cast<vtkIdType>(n);
+    offsets->SetNumberOfValues(count + 1);
+    points->SetNumberOfValues(count);
+    for (vtkIdType i = 0; i <= count; ++i) offsets->SetValue(i, static_cast<Value>(i));
+    for (vtkIdType i = 0; i < count; ++i) points->SetValue(i, static_cast<Value>(i));
     vertices->SetData(offsets, points);
   };
   if (n < static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max()))

@@ -76,8 +76,11 @@ class Output : public Parameterised {
       non_negative, optional, example("[0.1 s, 0.25 s]")};
   Param<std::vector<BodyIndex>> bodies{"bodies", nullptr, "Bodies to write; without it all.", optional,
                                        example("[water]")};
-  Param<std::vector<FieldName>> fields{"fields", nullptr, "Fields to write beside position and id.", optional,
-                                       example("[velocity, pressure]")};
+  Param<std::vector<FieldName>> fields{
+      "fields", nullptr,
+      "Fields, or components as velocity.x, to write beside position and id; without it the "
+      "shared fields that a body has.",
+      optional, example("[velocity, pressure]")};
 };
 
 }  // namespace shoal
