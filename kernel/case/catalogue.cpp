@@ -12,10 +12,19 @@ namespace shoal::kernel {
 
 TypeEntry RegistryCatalogue::find(shoal_type_kind kind, const std::string& name) const {
   const RegisteredType* type = registry_.find(kind, name);
+  // A case lists an operator that stands for itself among its physics; both are built in the same way.
+  if (type == nullptr && kind == SHOAL_TYPE_PHYSICS) type = registry_.find(SHOAL_TYPE_OPERATOR, name);
   return type != nullptr ? TypeEntry{&type->table, type->original} : TypeEntry{};
 }
 
-std::vector<std::string> RegistryCatalogue::names(shoal_type_kind kind) const { return registry_.names(kind); }
+std::vector<std::string> RegistryCatalogue::names(shoal_type_kind kind) const {
+  std::vector<std::string> all = registry_.names(kind);
+  if (kind == SHOAL_TYPE_PHYSICS) {
+    const std::vector<std::string> operators = registry_.names(SHOAL_TYPE_OPERATOR);
+    all.insert(all.end(), operators.begin(), operators.end());
+  }
+  return all;
+}
 
 std::string RegistryCatalogue::explain_unknown(shoal_type_kind kind, const std::string& name) const {
   return registry_.explain_unknown(kind, name, available_).text;

@@ -96,7 +96,8 @@ Json choice_of(const std::vector<const shoal_type*>& types, shoal_type_kind kind
   Json names = Json::array();
   Json properties = Json::object();
   for (const shoal_type* type : types) {
-    if (type->kind != static_cast<std::uint32_t>(kind)) continue;
+    const bool stands_for_itself = kind == SHOAL_TYPE_PHYSICS && type->kind == SHOAL_TYPE_OPERATOR;
+    if (type->kind != static_cast<std::uint32_t>(kind) && !stands_for_itself) continue;
     names.push_back(type->name);
     properties[type->name] = {{"anyOf", Json::array({table_schema(*type), {{"type", "null"}}})}};
   }
