@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "kernel/case/arrange.hpp"
+#include "kernel/case/shapes.hpp"
 #include "kernel/plugins/abi_reading.hpp"
 #include "kernel/plugins/host.hpp"
 #include "shoal/smoothing_kernel.hpp"
@@ -102,7 +103,36 @@ InitialField initial_field(const InitialValue& value, int dimensions) {
       for (std::uint64_t i = 0; i < n; ++i) out[i * components + c] = column[i];
     }
   };
-  return {value.field, rank_of(value, dimensions), evaluate, value.place};
+  return {value.field, rank_of(value, dimensions), evaluate, value.place, false};
+}
+
+// What the body's shape knows of its particles, for operators that ask.
+void add_fields_of_shape(const BodyModel& body, int dimensions, std::vector<InitialField>& fields) {
+  if (body.shape == nullptr) return;
+  const ShapePtr shape = make_shape(*body.shape, dimensions);
+  const auto for_each_point = [dimensions](std::uint64_t n, const double* positions, auto&& visit) {
+    const auto d = static_cast<std::uint64_t>(dimensions);
+    for (std::uint64_t i = 0; i < n; ++i) {
+      Point point{};
+      std::copy_n(positions + i * d, d, point.begin());
+      visit(i, point);
+    }
+  };
+  fields.push_back({"normal", SHOAL_RANK_VECTOR,
+                    [=](std::uint64_t n, const double* positions, double* out) {
+                      for_each_point(n, positions, [&](std::uint64_t i, const Point& point) {
+                        const Point normal = shape->normal(point);
+                        std::copy_n(normal.begin(), dimensions, out + i * static_cast<std::uint64_t>(dimensions));
+                      });
+                    },
+                    body.place, true});
+  fields.push_back({"signed_distance", SHOAL_SCALAR,
+                    [=](std::uint64_t n, const double* positions, double* out) {
+                      for_each_point(n, positions, [&](std::uint64_t i, const Point& point) {
+                        out[i] = shape->signed_distance(point);
+                      });
+                    },
+                    body.place, true});
 }
 
 BodySpecification specification_of(const BodyModel& body, const std::vector<Point>& points, int dimensions) {
@@ -119,6 +149,7 @@ BodySpecification specification_of(const BodyModel& body, const std::vector<Poin
   specification.positions.reserve(points.size() * static_cast<std::size_t>(dimensions));
   for (const Point& point : points)
     specification.positions.insert(specification.positions.end(), point.begin(), point.begin() + dimensions);
+  add_fields_of_shape(body, dimensions, specification.initial_fields);
   for (const InitialValue& value : body.initial)
     specification.initial_fields.push_back(initial_field(value, dimensions));
   return specification;

@@ -161,15 +161,15 @@ const shoal_type& reference_table() {
       row(SHOAL_TEXT, "column", nullptr, 0, nullptr, "Column of the probe; its first without this key.", "value"),
       row(SHOAL_FILE, "data", nullptr, 0, nullptr, "Table (CSV) of times and values to compare with.",
           "reference/martin_moyce_1952.csv"),
-      row(SHOAL_EXPRESSION, "exact", "1", 0, nullptr, "Exact value as an expression of t, instead of data.",
+      row(SHOAL_EXPRESSION, "exact", nullptr, 0, nullptr, "Exact value as an expression of t, instead of data.",
           "\"exp(-2*t)\""),
       row(SHOAL_TEXT, "time_column", nullptr, 0, "1", "Column of the times in the data, by name or number from 1.", "t"),
       row(SHOAL_TEXT, "value_column", nullptr, 0, "2", "Column of the values in the data, by name or number from 1.",
           "pressure"),
       row(SHOAL_REAL, "time_scale", "s", positive, "1", "What 1 in the column of times means.", "1 ms"),
       row(SHOAL_REAL, "time_shift", "s", 0, "0", "Added to the times of the data.", "0.1 s"),
-      row(SHOAL_REAL, "value_scale", "1", 0, "1", "Factor from the values of the data to SI units.", "1000"),
-      row(SHOAL_REAL, "value_shift", "1", 0, "0", "Added to the values of the data, in SI units.", "0"),
+      row(SHOAL_REAL, "value_scale", nullptr, 0, "1", "Factor from the values of the data to SI units.", "1000"),
+      row(SHOAL_REAL, "value_shift", nullptr, 0, "0", "Added to the values of the data, in SI units.", "0"),
       with_choices(row(SHOAL_CHOICE, "error", nullptr, 0, "rms",
                        "rms: root of the mean square difference over the largest value; relative_rms: over the root of "
                        "the mean square value; max: largest difference over the largest value; peak: difference of the "
@@ -177,7 +177,7 @@ const shoal_type& reference_table() {
                        "max"),
                    measures),
       row(SHOAL_REAL, "tolerance", "1", required | positive, nullptr, "Largest error with which the case passes.", "5 %"),
-      row(SHOAL_REAL, "scale", "1", positive, nullptr, "What differences are divided by instead, in SI units.", "1000"),
+      row(SHOAL_REAL, "scale", nullptr, positive, nullptr, "What differences are divided by instead, in SI units.", "1000"),
       row(SHOAL_REAL, "from", "s", not_negative, "0", "Times before are not compared.", "0.1 s"),
       row(SHOAL_REAL, "to", "s", positive, nullptr, "Times after are not compared.", "1 s"),
   };

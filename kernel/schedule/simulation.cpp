@@ -4,6 +4,8 @@
 // Building, initialising and driving a run.
 #include "kernel/schedule/simulation.hpp"
 
+#include <tbb/info.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -25,6 +27,8 @@ Simulation::Implementation::Implementation(const SimulationSettings& what)
       executor(neighbourhood, what.dimensions, what.failures, what.poison),
       stepper(schedule, executor, neighbourhood, health, what.dimensions),
       arena(threads_of(what.threads)) {
+  if (what.threads > tbb::info::default_concurrency())
+    more_threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(what.threads));
   make_domain();
   if (what.sort_interval > 0) neighbourhood.set_sort_interval(what.sort_interval);
 }
@@ -113,6 +117,7 @@ void Simulation::Implementation::declare_initial_fields() {
   for (std::uint32_t b = 0; b < bodies.size(); ++b) {
     for (const InitialField& initial : specifications[b].initial_fields) {
       const Field* field = bodies[b]->find(initial.name);
+      if (field == nullptr && initial.only_if_declared) continue;
       if (field == nullptr) {
         std::vector<std::string> names;
         for (const auto& candidate : bodies[b]->fields()) names.push_back(candidate->name());
@@ -154,7 +159,7 @@ void Simulation::Implementation::set_initial_values() {
     if (Field* reference = body.find("reference_position"))
       std::copy(position, position + n * reference->components(), reference->reals());
     for (const InitialField& initial : specifications[b].initial_fields)
-      initial.evaluate(n, position, body.find(initial.name)->reals());
+      if (Field* field = body.find(initial.name)) initial.evaluate(n, position, field->reals());
     specifications[b].volumes = {};
   }
 }

@@ -67,7 +67,8 @@ struct InitialField {
   std::string name;
   shoal_rank rank = SHOAL_SCALAR;
   std::function<void(std::uint64_t n, const double* positions, double* out)> evaluate;
-  std::string place;  ///< in the case, for messages
+  std::string place;              ///< in the case, for messages
+  bool only_if_declared = false;  ///< no error if nobody declares the field
 };
 
 struct BodySpecification {
