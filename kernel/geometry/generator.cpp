@@ -110,8 +110,14 @@ double volume_within(const Shape& shape, const Box& box, int dimension, int halv
   }
   const double distance = shape.signed_distance(centre);
   if (std::abs(distance) >= std::sqrt(squared)) return distance < 0.0 ? volume : 0.0;
-  const double side = box.upper[longest] - box.lower[longest];
-  if (halvings == 0 || side < smallest) return volume * std::clamp(0.5 - distance / side, 0.0, 1.0);
+  if (halvings == 0 || box.upper[longest] - box.lower[longest] < smallest) {
+    const Point normal = shape.normal(centre);
+    double across = 0.0;  // the cell's width as the surface sees it
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
+      across += std::abs(normal[a]) * (box.upper[a] - box.lower[a]);
+    }
+    return volume * std::clamp(0.5 - distance / across, 0.0, 1.0);
+  }
   Box low = box;
   Box high = box;
   low.upper[longest] = high.lower[longest] = centre[longest];

@@ -67,8 +67,8 @@ struct RelaxReport {
 /// Ten sweeps are good, twenty (the default) are nearly all there is to gain. Later the particles leave the
 /// square lattice that they still resemble for denser packings, and moves no longer decrease: more sweeps
 /// only cost. Near a flat surface of a shape the sum is off by up to 4 % even for a lattice, since the medium
-/// outside is uniform and the particles are not (8 % measured in the tips of a polygon); beside the wall's own
-/// particles (`fixed`) it is not.
+/// outside is uniform and the particles are not (8 % measured in the tips of a polygon); beside the wall's
+/// own particles (`fixed`) it is not.
 ///
 /// Cost on one core: 1.3 us per particle and sweep in 2D, 5 to 7 us in 3D; some 200 bytes per particle in 3D.
 ///
