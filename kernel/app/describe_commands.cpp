@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "kernel/app/commands.hpp"
@@ -19,8 +20,11 @@ namespace {
 
 std::string first_sentence(const char* doc) {
   const std::string text = doc != nullptr ? doc : "";
-  const std::size_t end = text.find(". ");
-  return end == std::string::npos ? text : text.substr(0, end + 1);
+  // The next one begins with a capital: "e.g. a wall" is not an end.
+  for (std::size_t end = text.find(". "); end != std::string::npos; end = text.find(". ", end + 1))
+    if (end + 2 < text.size() && std::isupper(static_cast<unsigned char>(text[end + 2])) != 0)
+      return text.substr(0, end + 1);
+  return text;
 }
 
 std::string owner_of(const RegisteredType& type) {

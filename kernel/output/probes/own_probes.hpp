@@ -30,8 +30,8 @@ struct PointParameters : Parameterised {
                                      "What: a field or its part, or an expression as for maximum. Several give as many "
                                      "columns.",
                                      example("velocity.magnitude")};
-  Param<std::vector<BodyIndex>> bodies{"bodies", nullptr, "Bodies whose particles are interpolated.",
-                                       example("[water]")};
+  Param<std::vector<BodyIndex>> body{"body", nullptr, "Body or bodies whose particles are interpolated.",
+                                     example("water")};
   Param<VectorExpression> at{"at", "m", "The point; it moves if its coordinates are expressions of t.",
                              example("[5.366, 0.2]")};
   Param<double> support{"support", "1",

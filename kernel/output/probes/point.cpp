@@ -68,7 +68,7 @@ class Point final : public Probe {
     parameters_.read(object, context.dimensions);
     for (const std::string& text : parameters_.of.value())
       of_.emplace_back(text, context.parameters, context.dimensions, parameters_.of.place());
-    for (const BodyIndex index : parameters_.bodies.value()) {
+    for (const BodyIndex index : parameters_.body.value()) {
       const shoal_body& body = context.bodies[index.value];
       const auto kernel = smoothing_kernel_from_name(body.smoothing_kernel);
       bodies_.push_back({index.value, body.spacing, body.smoothing_length, body.cutoff,
