@@ -35,7 +35,8 @@ bool RegistryCatalogue::is_excused(const std::string& name) const {
                      [&name](const std::string& id) { return name == id || name.rfind(id + ".", 0) == 0; });
 }
 
-RegistryCatalogue load_plugins(const CaseFile& file, Loader& loader, Registry& registry, Diagnostics& diagnostics) {
+RegistryCatalogue load_plugins(const CaseFile& file, Loader& loader, Registry& registry,
+                               Diagnostics& diagnostics) {
   RegistryCatalogue catalogue(registry, loader.search_path().available());
   std::vector<std::string> registered;
   for (const PluginRequest& request : file.plugins()) {
@@ -48,7 +49,8 @@ RegistryCatalogue load_plugins(const CaseFile& file, Loader& loader, Registry& r
         registry.add(*plugin);
       }
     } catch (const LoadFailure& failure) {
-      diagnostics.error(request.place, failure.what() + did_you_mean(request.id, failure.available()), failure.notes());
+      diagnostics.error(request.place, failure.what() + did_you_mean(request.id, failure.available()),
+                        failure.notes());
       catalogue.excuse(request.id);
     } catch (const TableError& error) {
       diagnostics.error(request.place, error.what(), error.problems());

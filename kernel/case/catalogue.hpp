@@ -37,6 +37,7 @@ class RegistryCatalogue : public TypeCatalogue {
 
 /// Loads each plugin of the case with what it requires and registers its types; failures are reported at the line
 /// that asks for it. [main thread]
-RegistryCatalogue load_plugins(const CaseFile& file, Loader& loader, Registry& registry, Diagnostics& diagnostics);
+RegistryCatalogue load_plugins(const CaseFile& file, Loader& loader, Registry& registry,
+                               Diagnostics& diagnostics);
 
 }  // namespace shoal::kernel

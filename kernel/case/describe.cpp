@@ -32,7 +32,9 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
 
 std::string kind_of_value(const shoal_parameter& p) {
   const std::string unit = p.unit != nullptr && std::string(p.unit) != "1" ? p.unit : "";
-  const auto with_unit = [&unit](const std::string& word) { return unit.empty() ? word : word + ", " + unit; };
+  const auto with_unit = [&unit](const std::string& word) {
+    return unit.empty() ? word : word + ", " + unit;
+  };
   switch (p.kind) {
     case SHOAL_BOOLEAN: return "true or false";
     case SHOAL_INTEGER: return "whole number";
@@ -64,12 +66,13 @@ std::string bounds_of(const shoal_parameter& p) {
   const bool low = (p.flags & SHOAL_PARAMETER_HAS_MINIMUM) != 0;
   const bool high = (p.flags & SHOAL_PARAMETER_HAS_MAXIMUM) != 0;
   std::vector<std::string> parts;
+  const std::string unit = p.unit != nullptr && std::string(p.unit) != "1" ? " " + std::string(p.unit) : "";
   if (low)
     parts.push_back(((p.flags & SHOAL_PARAMETER_MINIMUM_EXCLUDED) != 0 ? "greater than " : "at least ") +
-                    format_number(p.minimum));
+                    format_number(p.minimum) + unit);
   if (high)
     parts.push_back(((p.flags & SHOAL_PARAMETER_MAXIMUM_EXCLUDED) != 0 ? "less than " : "at most ") +
-                    format_number(p.maximum));
+                    format_number(p.maximum) + unit);
   return join(parts, ", ");
 }
 
@@ -83,7 +86,6 @@ std::string explanation(const shoal_parameter& p) {
     sentence("One of " + join(words));
   }
   if (const std::string bounds = bounds_of(p); !bounds.empty()) sentence("Must be " + bounds);
-  if (p.example != nullptr) sentence("Example: " + std::string(p.key) + ": " + p.example);
   return text;
 }
 
@@ -98,10 +100,12 @@ std::string describe_type(const shoal_type& type, const std::string& owner, int 
   const auto columns = static_cast<std::size_t>(std::max(width, 60));
   const std::span<const shoal_parameter> parameters(type.parameters, type.n_parameters);
   std::string text = std::string(type.name) + "  (" +
-                     (owner.empty() ? type_kind_name(static_cast<shoal_type_kind>(type.kind)) : owner) + ")\n";
+                     (owner.empty() ? type_kind_name(static_cast<shoal_type_kind>(type.kind)) : owner) +
+                     ")\n";
   for (const std::string& line : wrapped(type.doc != nullptr ? type.doc : "", columns)) text += line + "\n";
   if (type.source != nullptr) {
-    for (const std::string& line : wrapped("Source: " + std::string(type.source), columns)) text += line + "\n";
+    for (const std::string& line : wrapped("Source: " + std::string(type.source), columns))
+      text += line + "\n";
   }
   if (parameters.empty()) return text + "\n  It has no keys.\n";
 
@@ -119,9 +123,15 @@ std::string describe_type(const shoal_type& type, const std::string& owner, int 
           padded("default", widths[2]) + "  meaning\n";
   for (const shoal_parameter& p : parameters) {
     const std::string list = (p.flags & SHOAL_PARAMETER_LIST) != 0 ? "list of: " : "";
-    std::string line = "  " + padded(p.key, widths[0]) + "  " + padded(list + kind_of_value(p), widths[1]) + "  " +
-                       padded(default_of(p), widths[2]) + "  ";
-    for (const std::string& part : wrapped(explanation(p), room)) {
+    std::string line = "  " + padded(p.key, widths[0]) + "  " + padded(list + kind_of_value(p), widths[1]) +
+                       "  " + padded(default_of(p), widths[2]) + "  ";
+    std::vector<std::string> parts = wrapped(explanation(p), room);
+    if (p.example != nullptr) {
+      // On a line of its own and without a full stop, since it is there to be copied.
+      for (std::string& part : wrapped("Example: " + std::string(p.key) + ": " + p.example, room))
+        parts.push_back(std::move(part));
+    }
+    for (const std::string& part : parts) {
       line += part;
       while (!line.empty() && line.back() == ' ') line.pop_back();
       text += line + "\n";

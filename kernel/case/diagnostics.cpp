@@ -20,18 +20,23 @@ bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0U) ==
 // The code point that begins at `i`; moves `i` behind it. The text is valid UTF-8 (the reader checked it).
 std::uint32_t next_code_point(std::string_view s, std::size_t& i) {
   const auto lead = static_cast<unsigned char>(s[i++]);
-  std::uint32_t value = lead < 0x80U ? lead : lead < 0xE0U ? lead & 0x1FU : lead < 0xF0U ? lead & 0x0FU : lead & 0x07U;
-  while (i < s.size() && is_continuation(s[i])) value = (value << 6U) | (static_cast<unsigned char>(s[i++]) & 0x3FU);
+  std::uint32_t value = lead < 0x80U   ? lead
+                        : lead < 0xE0U ? lead & 0x1FU
+                        : lead < 0xF0U ? lead & 0x0FU
+                                       : lead & 0x07U;
+  while (i < s.size() && is_continuation(s[i]))
+    value = (value << 6U) | (static_cast<unsigned char>(s[i++]) & 0x3FU);
   return value;
 }
 
 // Columns of a terminal: combining marks take none, East Asian wide characters and emoji two (Unicode annex 11).
 int width_of(std::uint32_t c) {
   const auto in = [c](std::uint32_t first, std::uint32_t last) { return c >= first && c <= last; };
-  if (in(0x0300, 0x036F) || in(0x200B, 0x200F) || in(0x20D0, 0x20FF) || in(0xFE00, 0xFE0F) || c == 0xFEFF) return 0;
-  if (in(0x1100, 0x115F) || in(0x2E80, 0x303E) || in(0x3041, 0xA4CF) || in(0xAC00, 0xD7A3) || in(0xF900, 0xFAFF) ||
-      in(0xFE30, 0xFE6F) || in(0xFF00, 0xFF60) || in(0xFFE0, 0xFFE6) || in(0x1F300, 0x1F64F) ||
-      in(0x1F900, 0x1F9FF) || in(0x20000, 0x3FFFD))
+  if (in(0x0300, 0x036F) || in(0x200B, 0x200F) || in(0x20D0, 0x20FF) || in(0xFE00, 0xFE0F) || c == 0xFEFF)
+    return 0;
+  if (in(0x1100, 0x115F) || in(0x2E80, 0x303E) || in(0x3041, 0xA4CF) || in(0xAC00, 0xD7A3) ||
+      in(0xF900, 0xFAFF) || in(0xFE30, 0xFE6F) || in(0xFF00, 0xFF60) || in(0xFFE0, 0xFFE6) ||
+      in(0x1F300, 0x1F64F) || in(0x1F900, 0x1F9FF) || in(0x20000, 0x3FFFD))
     return 2;
   return 1;
 }
@@ -195,7 +200,8 @@ std::string format(const Diagnostic& item) {
     std::string number = std::to_string(place.line);
     number.insert(0, number.size() < 5 ? 5 - number.size() : 0, ' ');
     text += number + " | " + shown.text + "\n";
-    text += std::string(number.size(), ' ') + " | " + std::string(static_cast<std::size_t>(shown.begin), ' ') + "^" +
+    text += std::string(number.size(), ' ') + " | " +
+            std::string(static_cast<std::size_t>(shown.begin), ' ') + "^" +
             std::string(static_cast<std::size_t>(shown.width) - 1, '~') + "\n";
   }
   for (const std::string& note : item.notes) text += wrapped_note(note);
@@ -292,7 +298,8 @@ int display_width(std::string_view utf8) {
 }
 
 int count_characters(std::string_view utf8) {
-  return static_cast<int>(std::count_if(utf8.begin(), utf8.end(), [](char c) { return !is_continuation(c); }));
+  return static_cast<int>(
+      std::count_if(utf8.begin(), utf8.end(), [](char c) { return !is_continuation(c); }));
 }
 
 }  // namespace shoal::kernel

@@ -21,9 +21,11 @@ class Writer {
   explicit Writer(const CaseModel& model) : model_(model) {}
 
   std::string write() {
-    text_ = "# The case " + model_.name + " as it was computed: all values, in SI units, and where each came from.\n";
+    text_ = "# The case " + model_.name +
+            " as it was computed: all values, in SI units, and where each came from.\n";
     const shoal_type& table = case_table();
-    for (std::uint32_t k = 0; k < table.n_parameters; ++k) top_level(table.parameters[k], model_.values->values[k]);
+    for (std::uint32_t k = 0; k < table.n_parameters; ++k)
+      top_level(table.parameters[k], model_.values->values[k]);
     return std::move(text_);
   }
 
@@ -113,25 +115,30 @@ class Writer {
   void object(const shoal_object& object, int indent, const std::string& lead) {
     const shoal_type& table = model_.store.table(object);
     const std::string name = std::string(table.name) + ":";
-    const bool any = std::any_of(object.values, object.values + object.n_values,
-                                 [](const shoal_value& value) { return is_written(value); });
+    bool any = false;
+    for (std::uint32_t k = 0; k < table.n_parameters; ++k)
+      any = any || object.values[k].n > 0 || is_empty_list(table.parameters[k], object.values[k]);
     line(indent, lead + name + (any ? "" : " {}"), origin_of(object.place));
     object_values(object, indent + (lead.empty() ? 1 : 2));
   }
 
   void object_values(const shoal_object& object, int indent) {
     const shoal_type& table = model_.store.table(object);
-    for (std::uint32_t k = 0; k < table.n_parameters; ++k) entry(table.parameters[k], object.values[k], indent);
+    for (std::uint32_t k = 0; k < table.n_parameters; ++k)
+      entry(table.parameters[k], object.values[k], indent);
   }
 
-  // An empty list that somebody wrote is a value too.
-  static bool is_written(const shoal_value& value) { return value.n > 0 || value.origin != SHOAL_ORIGIN_DEFAULT; }
+  // An empty list that the case or the table gives is a value too.
+  static bool is_empty_list(const shoal_parameter& parameter, const shoal_value& value) {
+    return value.n == 0 && (parameter.flags & SHOAL_PARAMETER_LIST) != 0 &&
+           (parameter.default_text != nullptr || value.origin != SHOAL_ORIGIN_DEFAULT);
+  }
 
   void entry(const shoal_parameter& parameter, const shoal_value& value, int indent) {
     const std::string key = std::string(parameter.key) + ":";
     const bool is_list = (parameter.flags & SHOAL_PARAMETER_LIST) != 0;
     if (value.n == 0) {
-      if (is_list && (is_written(value) || parameter.default_text != nullptr)) {
+      if (is_empty_list(parameter, value)) {
         line(indent, key + " []", origin(value, nullptr));
       } else {
         line(indent, "# " + key + " not set");
@@ -156,7 +163,8 @@ class Writer {
         continue;
       }
       std::vector<std::string> items;
-      for (std::int64_t c = 0; c < value.integers[k]; ++c) items.push_back(expression(value.expressions[next++]));
+      for (std::int64_t c = 0; c < value.integers[k]; ++c)
+        items.push_back(expression(value.expressions[next++]));
       line(indent, key + (items.size() == 1 ? items[0] : "[" + join(items) + "]"));
     }
   }
@@ -176,7 +184,8 @@ class Writer {
       case SHOAL_REAL: return format_number(value.reals[k]);
       case SHOAL_VECTOR: return numbers(value.reals + k * d, d);
       case SHOAL_MATRIX:
-        for (std::uint32_t row = 0; row < d; ++row) parts.push_back(numbers(value.reals + (k * d + row) * d, d));
+        for (std::uint32_t row = 0; row < d; ++row)
+          parts.push_back(numbers(value.reals + (k * d + row) * d, d));
         return "[" + join(parts) + "]";
       case SHOAL_EXPRESSION: return expression(value.expressions[k]);
       case SHOAL_VECTOR_EXPRESSION:
@@ -204,13 +213,17 @@ class Writer {
 }  // namespace
 
 std::string yaml_text(const std::string& text) {
-  const auto plain_begin = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '/'; };
-  const auto plain_part = [&](char c) {
-    return plain_begin(c) || std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '+';
+  const auto plain_begin = [](char c) {
+    return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '/';
   };
-  const bool is_word = !text.empty() && plain_begin(text[0]) && std::all_of(text.begin(), text.end(), plain_part);
-  const bool has_meaning = parse_boolean(text) != BooleanText::not_boolean || text == "null" || text == "Null" ||
-                           text == "NULL";
+  const auto plain_part = [&](char c) {
+    return plain_begin(c) || std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' ||
+           c == '+';
+  };
+  const bool is_word =
+      !text.empty() && plain_begin(text[0]) && std::all_of(text.begin(), text.end(), plain_part);
+  const bool has_meaning =
+      parse_boolean(text) != BooleanText::not_boolean || text == "null" || text == "Null" || text == "NULL";
   if (is_word && !has_meaning) return text;
   std::string quoted = "\"";
   for (const char c : text) {

@@ -39,26 +39,39 @@ double modulo(double a, double b) { return a - b * std::floor(a / b); }
 double smallest(const double* values, int n) { return *std::min_element(values, values + n); }
 double largest(const double* values, int n) { return *std::max_element(values, values + n); }
 
-using Callback = std::variant<double (*)(double), double (*)(double, double), double (*)(double, double, double),
-                              double (*)(const double*, int)>;
+using Callback = std::variant<double (*)(double), double (*)(double, double),
+                              double (*)(double, double, double), double (*)(const double*, int)>;
 
 const std::map<std::string, Callback, std::less<>>& callbacks() {
   using One = double (*)(double);
   using Two = double (*)(double, double);
   static const std::map<std::string, Callback, std::less<>> table{
-      {"sin", static_cast<One>(std::sin)},     {"cos", static_cast<One>(std::cos)},
-      {"tan", static_cast<One>(std::tan)},     {"asin", static_cast<One>(std::asin)},
-      {"acos", static_cast<One>(std::acos)},   {"atan", static_cast<One>(std::atan)},
-      {"atan2", static_cast<Two>(std::atan2)}, {"sinh", static_cast<One>(std::sinh)},
-      {"cosh", static_cast<One>(std::cosh)},   {"tanh", static_cast<One>(std::tanh)},
-      {"exp", static_cast<One>(std::exp)},     {"log", static_cast<One>(std::log)},
-      {"log10", static_cast<One>(std::log10)}, {"sqrt", static_cast<One>(std::sqrt)},
-      {"cbrt", static_cast<One>(std::cbrt)},   {"hypot", static_cast<Two>(std::hypot)},
-      {"abs", static_cast<One>(std::fabs)},    {"floor", static_cast<One>(std::floor)},
-      {"ceil", static_cast<One>(std::ceil)},   {"round", static_cast<One>(std::round)},
-      {"sign", sign},                          {"mod", modulo},
-      {"min", smallest},                       {"max", largest},
-      {"step", step},                          {"smoothstep", smoothstep},
+      {"sin", static_cast<One>(std::sin)},
+      {"cos", static_cast<One>(std::cos)},
+      {"tan", static_cast<One>(std::tan)},
+      {"asin", static_cast<One>(std::asin)},
+      {"acos", static_cast<One>(std::acos)},
+      {"atan", static_cast<One>(std::atan)},
+      {"atan2", static_cast<Two>(std::atan2)},
+      {"sinh", static_cast<One>(std::sinh)},
+      {"cosh", static_cast<One>(std::cosh)},
+      {"tanh", static_cast<One>(std::tanh)},
+      {"exp", static_cast<One>(std::exp)},
+      {"log", static_cast<One>(std::log)},
+      {"log10", static_cast<One>(std::log10)},
+      {"sqrt", static_cast<One>(std::sqrt)},
+      {"cbrt", static_cast<One>(std::cbrt)},
+      {"hypot", static_cast<Two>(std::hypot)},
+      {"abs", static_cast<One>(std::fabs)},
+      {"floor", static_cast<One>(std::floor)},
+      {"ceil", static_cast<One>(std::ceil)},
+      {"round", static_cast<One>(std::round)},
+      {"sign", sign},
+      {"mod", modulo},
+      {"min", smallest},
+      {"max", largest},
+      {"step", step},
+      {"smoothstep", smoothstep},
   };
   return table;
 }
@@ -98,7 +111,9 @@ bool contains(const std::vector<std::string>& words, std::string_view word) {
 // Goes through a text, checks every word and sign of it, and leaves a text that muParser reads alike.
 class Scanner {
  public:
-  Scanner(const std::string& text, const ExpressionScope& scope) : text_(text), clean_(text), scope_(scope) { scan(); }
+  Scanner(const std::string& text, const ExpressionScope& scope) : text_(text), clean_(text), scope_(scope) {
+    scan();
+  }
 
   const std::string& clean() const { return clean_; }
   const std::map<std::string, double>& constants() const { return constants_; }
@@ -108,11 +123,13 @@ class Scanner {
 
  private:
   void scan() {
-    if (text_.find_first_not_of(" \t\n") == std::string::npos) throw ExpressionError("the expression is empty", 0, 1);
+    if (text_.find_first_not_of(" \t\n") == std::string::npos)
+      throw ExpressionError("the expression is empty", 0, 1);
     int depth = 0;
     for (std::size_t i = 0; i < text_.size();) {
       const char c = text_[i];
-      const bool number_point = c == '.' && i + 1 < text_.size() && std::isdigit(static_cast<unsigned char>(text_[i + 1])) != 0;
+      const bool number_point =
+          c == '.' && i + 1 < text_.size() && std::isdigit(static_cast<unsigned char>(text_[i + 1])) != 0;
       if (is_name_begin(c) || c == '$') {
         i = name(i);
       } else if (std::isdigit(static_cast<unsigned char>(c)) != 0 || number_point) {
@@ -141,23 +158,25 @@ class Scanner {
     if (std::string_view("+-*/^()<>?:,").find(text_[i]) != std::string_view::npos) return i + 1;
     if (text_[i] == ' ' || text_[i] == '\t' || text_[i] == '\n') return i + 1;
     std::size_t length = 1;
-    while (i + length < text_.size() && (static_cast<unsigned char>(text_[i + length]) & 0xC0U) == 0x80U) ++length;
+    while (i + length < text_.size() && (static_cast<unsigned char>(text_[i + length]) & 0xC0U) == 0x80U)
+      ++length;
     fail("'" + text_.substr(i, length) + "' cannot stand in an expression", i, 1);
   }
 
   std::size_t number(std::size_t i) const {
     std::size_t last = i;  // of what looks like one number to a reader
-    while (last < text_.size() &&
-           (is_name_part(text_[last]) || text_[last] == '.' ||
-            ((text_[last] == '+' || text_[last] == '-') && (text_[last - 1] == 'e' || text_[last - 1] == 'E'))))
+    while (last < text_.size() && (is_name_part(text_[last]) || text_[last] == '.' ||
+                                   ((text_[last] == '+' || text_[last] == '-') &&
+                                    (text_[last - 1] == 'e' || text_[last - 1] == 'E'))))
       ++last;
     const std::string whole = text_.substr(i, last - i);
     const NumberText parsed = parse_number(whole);
-    if (parsed.status == NumberText::Status::refused) fail("'" + whole + "' " + parsed.remedy, i, whole.size());
+    if (parsed.status == NumberText::Status::refused)
+      fail("'" + whole + "' " + parsed.remedy, i, whole.size());
     const std::size_t end = i + parsed.end;
     if (end < text_.size() && is_name_begin(text_[end])) {
-      fail("'" + whole + "' is no number; write '" + whole.substr(0, parsed.end) + "*" + whole.substr(parsed.end) +
-               "' for a product (units cannot stand in expressions)",
+      fail("'" + whole + "' is no number; write '" + whole.substr(0, parsed.end) + "*" +
+               whole.substr(parsed.end) + "' for a product (units cannot stand in expressions)",
            i, whole.size());
     }
     if (end < text_.size() && text_[end] == '.') fail("a number has one decimal point", end);
@@ -197,7 +216,8 @@ class Scanner {
     const std::string name = text_.substr(begin, end - begin);
     const std::size_t next = text_.find_first_not_of(" \t\n", end);
     if ((next != std::string::npos && text_[next] == '(') || find_function(name) != nullptr || name == "pi" ||
-        contains(scope_.variables, name) || (scope_.constant && scope_.constant(name)) || !scope_.is_field(name))
+        contains(scope_.variables, name) || (scope_.constant && scope_.constant(name)) ||
+        !scope_.is_field(name))
       return 0;
     if (!contains(fields_, name)) fields_.push_back(name);
     return end;
@@ -206,8 +226,8 @@ class Scanner {
   static void check_function(const std::string& word, bool call, std::size_t offset, std::size_t length) {
     const ExpressionFunction* function = find_function(word);
     if (function == nullptr)
-      throw ExpressionError("unknown function '" + word + "'" + did_you_mean(word, function_names()), offset, length,
-                            {"functions: " + join(function_names())});
+      throw ExpressionError("unknown function '" + word + "'" + did_you_mean(word, function_names()), offset,
+                            length, {"functions: " + join(function_names())});
     if (!call) fail("the function '" + word + "' needs its arguments: " + function->usage, offset, length);
   }
 
@@ -218,7 +238,8 @@ class Scanner {
     }
     if (std::find(variable_names.begin(), variable_names.end(), word) != variable_names.end()) {
       if (scope_.variables.empty())
-        fail("'" + word + "' cannot stand here: this value is the same everywhere and always", offset, length);
+        fail("'" + word + "' cannot stand here: this value is the same everywhere and always", offset,
+             length);
       if (word != "t") fail("'" + word + "' does not exist in two dimensions", offset, length);
       fail("'t' cannot stand here: this value does not change in time", offset, length);
     }
@@ -258,12 +279,14 @@ class Scanner {
     case mu::ecUNEXPECTED_PARENS:
       if (token == "(") throw at("an operator is missing before '('");
       throw at("unexpected '" + (token.empty() ? ")" : token) + "'");
-    case mu::ecUNEXPECTED_OPERATOR: throw at("unexpected operator '" + token + "'; a value is missing before it");
+    case mu::ecUNEXPECTED_OPERATOR:
+      throw at("unexpected operator '" + token + "'; a value is missing before it");
     case mu::ecUNEXPECTED_VAL:
     case mu::ecUNEXPECTED_VAR:
     case mu::ecUNEXPECTED_FUN: throw at("an operator is missing before '" + token + "'");
     case mu::ecUNEXPECTED_ARG:
-    case mu::ecUNEXPECTED_ARG_SEP: throw ExpressionError("a ',' stands outside of a function", 0, text.size());
+    case mu::ecUNEXPECTED_ARG_SEP:
+      throw ExpressionError("a ',' stands outside of a function", 0, text.size());
     case mu::ecTOO_MANY_PARAMS: throw at("too many arguments" + usage);
     case mu::ecTOO_FEW_PARAMS: throw at("too few arguments" + usage);
     case mu::ecMISSING_ELSE_CLAUSE: throw ExpressionError("':' is missing after '?'", text.size() - 1, 1);
@@ -298,7 +321,8 @@ class Expression::Program {
     try {
       std::unique_ptr<Instance> first = make();
       value = first->parser.Eval();
-      if (first->parser.GetNumResults() > 1) throw ExpressionError("a ',' stands outside of a function", 0, text.size());
+      if (first->parser.GetNumResults() > 1)
+        throw ExpressionError("a ',' stands outside of a function", 0, text.size());
       if (!constant) pool_.push_back(std::move(first));
     } catch (const mu::ParserError& problem) {
       rethrow(problem, clean_);
@@ -336,7 +360,8 @@ class Expression::Program {
     if (!fields.empty()) {
       instance->parser.DefineNameChars("0123456789_.abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
       instance->fields.resize(fields.size());
-      for (std::size_t k = 0; k < fields.size(); ++k) instance->parser.DefineVar(fields[k], &instance->fields[k]);
+      for (std::size_t k = 0; k < fields.size(); ++k)
+        instance->parser.DefineVar(fields[k], &instance->fields[k]);
     }
     instance->parser.SetExpr(clean_);
     return instance;
@@ -383,8 +408,8 @@ void Expression::evaluate(int dimensions, std::size_t n, const double* points, d
   run(n, Points{interleaved(dimensions, points), static_cast<std::size_t>(dimensions)}, t, out);
 }
 
-void Expression::evaluate(int dimensions, std::size_t n, const double* points, const double* const* columns, double t,
-                          double* out) const {
+void Expression::evaluate(int dimensions, std::size_t n, const double* points, const double* const* columns,
+                          double t, double* out) const {
   run(n, Points{interleaved(dimensions, points), static_cast<std::size_t>(dimensions), columns}, t, out);
 }
 
@@ -413,7 +438,8 @@ bool is_reserved_name(std::string_view name) {
 
 std::string lone_name(std::string_view text) {
   if (!text.empty() && text[0] == '$') text.remove_prefix(1);
-  const bool good = !text.empty() && is_name_begin(text[0]) && std::all_of(text.begin(), text.end(), is_name_part);
+  const bool good =
+      !text.empty() && is_name_begin(text[0]) && std::all_of(text.begin(), text.end(), is_name_part);
   return good ? std::string(text) : std::string();
 }
 

@@ -58,7 +58,8 @@ class Expression {
   double value() const;
 
   /// out[i] at (x[i], y[i], z[i], t); coordinates that the scope has not may be null. [any thread, concurrently]
-  void evaluate(std::size_t n, const double* x, const double* y, const double* z, double t, double* out) const;
+  void evaluate(std::size_t n, const double* x, const double* y, const double* z, double t,
+                double* out) const;
   /// The same for points of `dimensions` interleaved coordinates. [any thread, concurrently]
   void evaluate(int dimensions, std::size_t n, const double* points, double t, double* out) const;
 

@@ -31,7 +31,8 @@ Json number(const shoal_parameter& p) {
 Json list_of(const Json& item) { return {{"type", "array"}, {"items", item}}; }
 
 Json map_of(const Json& item) {
-  return {{"type", "object"}, {"patternProperties", {{"^x-", Json::object()}}}, {"additionalProperties", item}};
+  return {
+      {"type", "object"}, {"patternProperties", {{"^x-", Json::object()}}}, {"additionalProperties", item}};
 }
 
 Json element(const shoal_parameter& p) {
@@ -115,8 +116,8 @@ std::string json_schema(const std::vector<const shoal_type*>& types) {
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Shoal case"}};
   schema.update(table_schema(case_table()));
   Json definitions = Json::object();
-  for (const shoal_type_kind kind : {SHOAL_TYPE_OPERATOR, SHOAL_TYPE_MATERIAL, SHOAL_TYPE_PHYSICS, SHOAL_TYPE_SHAPE,
-                                     SHOAL_TYPE_OUTPUT, SHOAL_TYPE_PROBE})
+  for (const shoal_type_kind kind : {SHOAL_TYPE_OPERATOR, SHOAL_TYPE_MATERIAL, SHOAL_TYPE_PHYSICS,
+                                     SHOAL_TYPE_SHAPE, SHOAL_TYPE_OUTPUT, SHOAL_TYPE_PROBE})
     definitions[type_kind_name(kind)] = choice_of(types, kind);
   schema["definitions"] = definitions;
   return schema.dump(2) + "\n";

@@ -77,8 +77,12 @@ bool is_name(const std::string& name) {
 class CaseReader {
  public:
   CaseReader(const CaseFile& file, const TypeCatalogue& types, Diagnostics& diagnostics)
-      : file_(file), root_(file.root()), diagnostics_(diagnostics), model_(std::make_unique<CaseModel>()),
-        context_{read_dimensions(), model_->parameters, types, body_names(), file.folder(), model_->store, diagnostics} {}
+      : file_(file),
+        root_(file.root()),
+        diagnostics_(diagnostics),
+        model_(std::make_unique<CaseModel>()),
+        context_{read_dimensions(), model_->parameters, types,      body_names(),
+                 file.folder(),     model_->store,      diagnostics} {}
 
   std::unique_ptr<CaseModel> read() {
     CaseModel& model = *model_;
@@ -137,8 +141,13 @@ class CaseReader {
     // A required section that is missing was reported with the top level.
     const bool missing = node.is_null() && root_.find(key) == nullptr;
     Diagnostics silent;
-    const SchemaContext context{context_.dimensions, context_.parameters, context_.types, context_.bodies,
-                                context_.folder, context_.store, missing ? silent : diagnostics_};
+    const SchemaContext context{context_.dimensions,
+                                context_.parameters,
+                                context_.types,
+                                context_.bodies,
+                                context_.folder,
+                                context_.store,
+                                missing ? silent : diagnostics_};
     return read_object(node, entry(*section_table(key)), key_place(root_, key), context);
   }
 
@@ -189,23 +198,26 @@ class CaseReader {
       const std::string axis(1, axis_names[k]);
       const bool mirror = domain.mirror_lower[k] || domain.mirror_upper[k];
       if (context_.dimensions == 2 && k == 2 && (domain.periodic[k] || mirror)) {
-        diagnostics_.error(node.find(mirror ? "mirror" : "periodic")->place(), "the case has two dimensions and no z");
+        diagnostics_.error(node.find(mirror ? "mirror" : "periodic")->place(),
+                           "the case has two dimensions and no z");
         continue;
       }
       if (domain.periodic[k] && mirror)
-        diagnostics_.error(node.find("mirror")->place(), "a face of axis " + axis + " cannot be a mirror: the axis is periodic");
+        diagnostics_.error(node.find("mirror")->place(),
+                           "a face of axis " + axis + " cannot be a mirror: the axis is periodic");
       if (domain.lower[k] >= domain.upper[k])
         diagnostics_.error((node.find("upper") != nullptr ? node.find("upper") : node.find("lower"))->place(),
-                           "the domain is empty along " + axis + ": lower is " + format_number(domain.lower[k]) +
-                               " m, upper is " + format_number(domain.upper[k]) + " m");
+                           "the domain is empty along " + axis + ": lower is " +
+                               format_number(domain.lower[k]) + " m, upper is " +
+                               format_number(domain.upper[k]) + " m");
       const bool open_lower = std::isinf(domain.lower[k]);
       const bool open_upper = std::isinf(domain.upper[k]);
       const bool wants_lower = domain.periodic[k] || domain.mirror_lower[k];
       const bool wants_upper = domain.periodic[k] || domain.mirror_upper[k];
       if ((wants_lower && open_lower) || (wants_upper && open_upper))
         diagnostics_.error(node.find(domain.periodic[k] ? "periodic" : "mirror")->place(),
-                           "axis " + axis + " needs a finite '" + (wants_lower && open_lower ? "lower" : "upper") +
-                               "' of the domain",
+                           "axis " + axis + " needs a finite '" +
+                               (wants_lower && open_lower ? "lower" : "upper") + "' of the domain",
                            {"example: domain: {lower: [0, 0], upper: [1, 1], periodic: [x]}"});
     }
   }
@@ -214,7 +226,8 @@ class CaseReader {
     const Values smoothing(*model_->smoothing, *section_table("smoothing"));
     const std::vector<Node::Entry> items = named_items("bodies", "body");
     const Node& node = child(root_, "bodies");
-    if (root_.find("bodies") != nullptr && (node.is_null() || (node.is_map() && items.empty())) && node.entries().empty())
+    if (root_.find("bodies") != nullptr && (node.is_null() || (node.is_map() && items.empty())) &&
+        node.entries().empty())
       diagnostics_.error(key_place(root_, "bodies"), "there is no body",
                          {"example: bodies: " + std::string(case_row("bodies").example)});
     for (const Node::Entry& item : items) {
@@ -259,14 +272,16 @@ class CaseReader {
     run.end = values.real("end");
     run.checkpoint_every = values.optional_real("checkpoint_every");
     const shoal_value& factors = values.value("time_step_factors");
-    for (std::uint32_t k = 0; k < factors.n; ++k) run.time_step_factors.emplace_back(factors.texts[k], factors.reals[k]);
+    for (std::uint32_t k = 0; k < factors.n; ++k)
+      run.time_step_factors.emplace_back(factors.texts[k], factors.reals[k]);
   }
 
   void read_probes() {
     for (const Node::Entry& item : named_items("probes", "probe")) {
       if (!item.value.is_map()) {
-        diagnostics_.error(item.value.place(), "expected a map of one probe type and 'every', got " + item.value.described(),
-                           {"example: " + item.key + ": {maximum: {of: position.x, body: water}, every: 5 ms}"});
+        diagnostics_.error(
+            item.value.place(), "expected a map of one probe type and 'every', got " + item.value.described(),
+            {"example: " + item.key + ": {maximum: {of: position.x, body: water}, every: 5 ms}"});
         continue;
       }
       read_probe(item);
@@ -298,8 +313,9 @@ class CaseReader {
     if (types.size() != 1) {
       std::vector<std::string> got;
       for (const Node::Entry& key : item.value.entries()) got.push_back("'" + key.key + "'");
-      diagnostics_.error(item.key_place, "expected one type of probe beside 'every' in '" + item.key + "', got " +
-                                             (got.empty() ? "nothing" : join(got)),
+      diagnostics_.error(item.key_place,
+                         "expected one type of probe beside 'every' in '" + item.key + "', got " +
+                             (got.empty() ? "nothing" : join(got)),
                          {"probes: " + join(context_.types.names(SHOAL_TYPE_PROBE))});
       return;
     }
@@ -307,7 +323,8 @@ class CaseReader {
     ProbeModel probe;
     probe.name = item.key;
     probe.place = item.key_place.text();
-    probe.object = read_named_object(types[0].key, types[0].key_place, types[0].value, SHOAL_TYPE_PROBE, context_);
+    probe.object =
+        read_named_object(types[0].key, types[0].key_place, types[0].value, SHOAL_TYPE_PROBE, context_);
     probe.values = read_object(Node::map(common, item.value.place()), entry(table), item.key_place, context_);
     probe.every = Values(*probe.values, table).real("every");
     model_->probes.push_back(std::move(probe));
@@ -335,7 +352,8 @@ class CaseReader {
     reference.probe = values.text("probe");
     reference.column = values.optional_text("column");
     reference.data = values.optional_text("data");
-    if (values.is_set("exact")) reference.exact = Expression::from_handle(values.value("exact").expressions[0]);
+    if (values.is_set("exact"))
+      reference.exact = Expression::from_handle(values.value("exact").expressions[0]);
     reference.time_column = values.text("time_column");
     reference.value_column = values.text("value_column");
     reference.time_scale = values.real("time_scale");
@@ -356,15 +374,18 @@ class CaseReader {
     const Node& section = child(root_, "probes");
     for (const Node::Entry& probe : section.entries()) probes.push_back(probe.key);
     if (std::find(probes.begin(), probes.end(), reference.probe) == probes.end())
-      diagnostics_.error(node.find("probe")->place(),
-                         "there is no probe '" + reference.probe + "'" + did_you_mean(reference.probe, probes),
-                         {probes.empty() ? "the case has no section 'probes'" : "probes: " + join(probes)});
+      diagnostics_.error(
+          node.find("probe")->place(),
+          "there is no probe '" + reference.probe + "'" + did_you_mean(reference.probe, probes),
+          {probes.empty() ? "the case has no section 'probes'" : "probes: " + join(probes)});
     if (reference.data.has_value() == reference.exact.has_value())
-      diagnostics_.error(node.place(), reference.data ? "a reference has 'data' or 'exact', not both"
-                                                      : "a reference needs 'data' or 'exact'",
+      diagnostics_.error(node.place(),
+                         reference.data ? "a reference has 'data' or 'exact', not both"
+                                        : "a reference needs 'data' or 'exact'",
                          {"example: data: reference/martin_moyce_1952.csv", "example: exact: \"exp(-2*t)\""});
     if (reference.to && *reference.to <= reference.from)
-      diagnostics_.error(node.find("to")->place(), "'to' must be later than 'from' (" + format_number(reference.from) + " s)");
+      diagnostics_.error(node.find("to")->place(),
+                         "'to' must be later than 'from' (" + format_number(reference.from) + " s)");
   }
 
   const CaseFile& file_;
@@ -376,8 +397,11 @@ class CaseReader {
 
 }  // namespace
 
-CaseFile::CaseFile(const std::string& path, const std::vector<std::string>& settings, Diagnostics& diagnostics)
-    : name_(path), folder_(std::filesystem::path(path).parent_path().string()), root_(read_yaml_file(path, diagnostics)) {
+CaseFile::CaseFile(const std::string& path, const std::vector<std::string>& settings,
+                   Diagnostics& diagnostics)
+    : name_(path),
+      folder_(std::filesystem::path(path).parent_path().string()),
+      root_(read_yaml_file(path, diagnostics)) {
   finish(settings, diagnostics);
 }
 
@@ -397,7 +421,8 @@ void CaseFile::finish(const std::vector<std::string>& settings, Diagnostics& dia
   }
 }
 
-std::unique_ptr<CaseModel> check_case(const CaseFile& file, const TypeCatalogue& types, Diagnostics& diagnostics) {
+std::unique_ptr<CaseModel> check_case(const CaseFile& file, const TypeCatalogue& types,
+                                      Diagnostics& diagnostics) {
   return CaseReader(file, types, diagnostics).read();
 }
 

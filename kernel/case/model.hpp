@@ -70,43 +70,43 @@ struct BodyModel {
   std::string smoothing_kernel;
   double smoothing_ratio = 0;
   std::vector<InitialValue> initial;
-  const shoal_object* values = nullptr;    ///< of section_table("bodies")
+  const shoal_object* values = nullptr;  ///< of section_table("bodies")
 };
 
 struct ProbeModel {
   std::string name;
   std::string place;
-  const shoal_object* object = nullptr;    ///< of a type of kind SHOAL_TYPE_PROBE
-  double every = 0;                        ///< s
-  const shoal_object* values = nullptr;    ///< of section_table("probes")
+  const shoal_object* object = nullptr;  ///< of a type of kind SHOAL_TYPE_PROBE
+  double every = 0;                      ///< s
+  const shoal_object* values = nullptr;  ///< of section_table("probes")
 };
 
 struct ReferenceModel {
   std::string place;
   std::string probe;
   std::optional<std::string> column;
-  std::optional<std::string> data;         ///< absolute path; or
-  std::optional<Expression> exact;         ///< of t
+  std::optional<std::string> data;  ///< absolute path; or
+  std::optional<Expression> exact;  ///< of t
   std::string time_column, value_column;
-  double time_scale = 1, time_shift = 0;   ///< s
+  double time_scale = 1, time_shift = 0;  ///< s
   double value_scale = 1, value_shift = 0;
-  std::string error;                       ///< rms, relative_rms, max, peak, final
+  std::string error;  ///< rms, relative_rms, max, peak, final
   double tolerance = 0;
   std::optional<double> scale;
-  double from = 0;                         ///< s
-  std::optional<double> to;                ///< s
-  const shoal_object* values = nullptr;    ///< of section_table("reference")
+  double from = 0;                       ///< s
+  std::optional<double> to;              ///< s
+  const shoal_object* values = nullptr;  ///< of section_table("reference")
 };
 
 struct DomainModel {
   std::array<double, 3> lower{}, upper{};  ///< m; infinite where open
   std::array<bool, 3> periodic{};
   std::array<bool, 3> mirror_lower{}, mirror_upper{};
-  const shoal_object* values = nullptr;    ///< of section_table("domain")
+  const shoal_object* values = nullptr;  ///< of section_table("domain")
 };
 
 struct RunModel {
-  double end = 0;                          ///< s
+  double end = 0;  ///< s
   std::vector<std::pair<std::string, double>> time_step_factors;
   std::optional<double> checkpoint_every;  ///< s
   const shoal_object* values = nullptr;    ///< of section_table("run")
@@ -114,13 +114,13 @@ struct RunModel {
 
 /// Everything that a case says, in SI units. Owns all that it points to.
 struct CaseModel {
-  std::string name;                        ///< of the file, as given
+  std::string name;  ///< of the file, as given
   std::string title;
   std::vector<PluginRequest> plugins;
   int dimensions = 0;
   Parameters parameters;
-  double resolution = 0;                   ///< m
-  std::array<double, 3> gravity{};         ///< m/s2
+  double resolution = 0;            ///< m
+  std::array<double, 3> gravity{};  ///< m/s2
   DomainModel domain;
   std::vector<BodyModel> bodies;
   std::vector<const shoal_object*> physics;
@@ -128,12 +128,13 @@ struct CaseModel {
   std::vector<const shoal_object*> outputs;
   std::vector<ProbeModel> probes;
   std::vector<ReferenceModel> references;
-  const shoal_object* smoothing = nullptr; ///< of section_table("smoothing")
-  const shoal_object* values = nullptr;    ///< of case_table()
+  const shoal_object* smoothing = nullptr;  ///< of section_table("smoothing")
+  const shoal_object* values = nullptr;     ///< of case_table()
   ObjectStore store;
 };
 
 /// Checks everything; what is wrong goes to `diagnostics`, and the model is good only if there is no error.
-std::unique_ptr<CaseModel> check_case(const CaseFile& file, const TypeCatalogue& types, Diagnostics& diagnostics);
+std::unique_ptr<CaseModel> check_case(const CaseFile& file, const TypeCatalogue& types,
+                                      Diagnostics& diagnostics);
 
 }  // namespace shoal::kernel

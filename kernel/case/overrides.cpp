@@ -25,7 +25,8 @@ Words split_path(const std::string& path) {
 }
 
 std::string joined(const Words& words, std::size_t begin, std::size_t end) {
-  return join(Words(words.begin() + static_cast<std::ptrdiff_t>(begin), words.begin() + static_cast<std::ptrdiff_t>(end)),
+  return join(Words(words.begin() + static_cast<std::ptrdiff_t>(begin),
+                    words.begin() + static_cast<std::ptrdiff_t>(end)),
               ".");
 }
 
@@ -45,7 +46,10 @@ std::string type_name(const Node& item) {
 class Override {
  public:
   Override(Words words, Node value, Place place, const Words& sections, Diagnostics& diagnostics)
-      : words_(std::move(words)), value_(std::move(value)), place_(std::move(place)), sections_(sections),
+      : words_(std::move(words)),
+        value_(std::move(value)),
+        place_(std::move(place)),
+        sections_(sections),
         diagnostics_(diagnostics) {}
 
   /// The node with what the words from `at` on name set in it; nothing if an error was reported.
@@ -80,7 +84,8 @@ class Override {
 
   Node created(std::size_t at) const {
     Node node = value_;
-    for (std::size_t k = words_.size(); k > at; --k) node = Node::map({{words_[k - 1], place_, node}}, place_);
+    for (std::size_t k = words_.size(); k > at; --k)
+      node = Node::map({{words_[k - 1], place_, node}}, place_);
     return node;
   }
 
@@ -116,7 +121,8 @@ class Override {
       return false;
     }
     if (at + 1 == words_.size()) return true;
-    fail("there is no '" + words_[at] + "' in '" + joined(words_, 0, at) + "'" + did_you_mean(words_[at], known),
+    fail("there is no '" + words_[at] + "' in '" + joined(words_, 0, at) + "'" +
+             did_you_mean(words_[at], known),
          {"it has: " + join(known)});
     return false;
   }
@@ -137,7 +143,8 @@ class Override {
     Words types;
     for (const Node& item : items) types.push_back(type_name(item));
     const std::string wanted = joined(words_, at, std::min(words_.size(), at + 2));
-    fail("there is no '" + wanted + "' in the list '" + joined(words_, 0, at) + "'" + did_you_mean(wanted, types),
+    fail("there is no '" + wanted + "' in the list '" + joined(words_, 0, at) + "'" +
+             did_you_mean(wanted, types),
          {"it has: " + join(types)});
     return std::nullopt;
   }
@@ -186,9 +193,11 @@ Node apply_overrides(const Node& root, const std::vector<std::string>& settings,
     const Node value = read_yaml_value(setting.substr(equals + 1), place, diagnostics);
     if (diagnostics.n_errors() > errors) continue;
     const Node* parameters = result.is_map() ? result.find("parameters") : nullptr;
-    if (words.size() == 1 && parameters != nullptr && parameters->is_map() && parameters->find(words[0]) != nullptr)
+    if (words.size() == 1 && parameters != nullptr && parameters->is_map() &&
+        parameters->find(words[0]) != nullptr)
       words.insert(words.begin(), "parameters");
-    const Override change(std::move(words), value.is_null() ? Node::null(place) : value, place, sections, diagnostics);
+    const Override change(std::move(words), value.is_null() ? Node::null(place) : value, place, sections,
+                          diagnostics);
     if (const std::optional<Node> changed = change.apply(result, 0)) result = *changed;
   }
   return result;

@@ -50,7 +50,8 @@ void report(const ExpressionError& problem, const Node& node, const NumberReques
   if (parameters.mentions_broken(node.text())) return;
   std::string message = problem.what();
   if (!lone_name(trimmed(node.text())).empty() && message.rfind("unknown name", 0) == 0)
-    message += (message.find("; did") == std::string::npos ? "; expected " : " Expected ") + described_number(request);
+    message += (message.find("; did") == std::string::npos ? "; expected " : " Expected ") +
+               described_number(request);
   diagnostics.error(expression_place(node, problem.offset(), problem.length()), message, problem.notes());
 }
 
@@ -79,14 +80,15 @@ bool unit_fits(const Node& node, const NumberRequest& request, const Parameters&
   if (parameter == nullptr || parameter->unit.empty() || request.unit == nullptr) return true;
   if (same_dimension(parameter->unit, request.unit)) return true;
   diagnostics.error(node.place(),
-                    "expected " + described_unit(request.unit) + ", got the parameter '" + parameter->name + "', " +
-                        described_unit(parameter->unit),
+                    "expected " + described_unit(request.unit) + ", got the parameter '" + parameter->name +
+                        "', " + described_unit(parameter->unit),
                     {parameter->name + " is set at " + parameter->place.text()});
   return false;
 }
 
 // What every scalar must pass before it is a number or an expression. Returns false if it was complained about.
-bool check_scalar(const Node& node, const Quantity& quantity, const NumberRequest& request, Diagnostics& diagnostics) {
+bool check_scalar(const Node& node, const Quantity& quantity, const NumberRequest& request,
+                  Diagnostics& diagnostics) {
   if (!node.is_scalar()) {
     diagnostics.error(node.place(), "expected " + described_number(request) + ", got " + node.described());
     return false;
@@ -134,7 +136,10 @@ std::set<std::string> words(const std::string& text) {
 class Parameters::Resolver {
  public:
   Resolver(Parameters& parameters, std::vector<Node> nodes, Diagnostics& diagnostics)
-      : all_(parameters), nodes_(std::move(nodes)), state_(nodes_.size(), State::untouched), diagnostics_(diagnostics) {}
+      : all_(parameters),
+        nodes_(std::move(nodes)),
+        state_(nodes_.size(), State::untouched),
+        diagnostics_(diagnostics) {}
 
   void run() {
     for (std::size_t k = 0; k < nodes_.size(); ++k) resolve(k);
@@ -174,7 +179,8 @@ class Parameters::Resolver {
   void evaluate_quantity(Parameter& parameter, const Quantity& quantity, const Node& node) {
     try {
       parameter.unit = si_unit(quantity.unit, trimmed(node.text()));
-      parameter.value = convert_unit(quantity.number.value, quantity.unit, parameter.unit, trimmed(node.text()));
+      parameter.value =
+          convert_unit(quantity.number.value, quantity.unit, parameter.unit, trimmed(node.text()));
     } catch (const UnitError& problem) {
       std::vector<std::string> notes;
       const std::string number = trimmed(node.text()).substr(0, quantity.number.end);
@@ -259,7 +265,8 @@ Parameters::Parameters(const Node& section, Diagnostics& diagnostics) {
       const bool coordinate = entry.key == "x" || entry.key == "y" || entry.key == "z" || entry.key == "t";
       const std::string meaning = entry.key == "pi" ? "a number" : coordinate ? "a coordinate" : "a function";
       diagnostics.error(entry.key_place,
-                        "'" + entry.key + "' is " + meaning + " of expressions and cannot be a parameter; choose another name");
+                        "'" + entry.key + "' is " + meaning +
+                            " of expressions and cannot be a parameter; choose another name");
       continue;
     }
     parameters_.push_back(std::move(parameter));
@@ -304,8 +311,8 @@ bool Parameters::mentions_broken(const std::string& expression) const {
 // ------------------------------------------------------------------------------------------------------------
 
 std::optional<Expression> read_expression(const Node& node, const NumberRequest& request,
-                                          const std::vector<std::string>& variables, const Parameters& parameters,
-                                          Diagnostics& diagnostics) {
+                                          const std::vector<std::string>& variables,
+                                          const Parameters& parameters, Diagnostics& diagnostics) {
   const std::string text = node.is_scalar() ? trimmed(node.text()) : std::string();
   const Quantity quantity = split(text, request.allow_infinite);
   if (!check_scalar(node, quantity, request, diagnostics)) return std::nullopt;
@@ -325,14 +332,15 @@ std::optional<Expression> read_expression(const Node& node, const NumberRequest&
   }
 }
 
-std::optional<double> read_number(const Node& node, const NumberRequest& request, const Parameters& parameters,
-                                  Diagnostics& diagnostics) {
+std::optional<double> read_number(const Node& node, const NumberRequest& request,
+                                  const Parameters& parameters, Diagnostics& diagnostics) {
   const std::optional<Expression> expression = read_expression(node, request, {}, parameters, diagnostics);
   return expression ? std::optional<double>(expression->value()) : std::nullopt;
 }
 
 std::string described_number(const NumberRequest& request) {
-  return request.unit == nullptr || std::string(request.unit) == "1" ? "a number" : described_unit(request.unit);
+  return request.unit == nullptr || std::string(request.unit) == "1" ? "a number"
+                                                                     : described_unit(request.unit);
 }
 
 }  // namespace shoal::kernel

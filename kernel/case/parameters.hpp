@@ -22,11 +22,11 @@ class Parameters {
  public:
   struct Parameter {
     std::string name;
-    Place place;            ///< of the value
-    std::string text;       ///< as written
-    std::string unit;       ///< "m" where the value was written with one; empty if not known
-    double value = 0;       ///< SI; where the unit is known, of that unit's SI unit
-    bool broken = false;    ///< its error was reported already
+    Place place;          ///< of the value
+    std::string text;     ///< as written
+    std::string unit;     ///< "m" where the value was written with one; empty if not known
+    double value = 0;     ///< SI; where the unit is known, of that unit's SI unit
+    bool broken = false;  ///< its error was reported already
   };
 
   Parameters() = default;
@@ -49,18 +49,18 @@ class Parameters {
 };
 
 struct NumberRequest {
-  const char* unit = nullptr;     ///< the unit that is wanted; null: a plain number
+  const char* unit = nullptr;  ///< the unit that is wanted; null: a plain number
   bool allow_infinite = false;
 };
 
 /// The value of a scalar in the wanted unit. Without a value the error was reported.
-std::optional<double> read_number(const Node& node, const NumberRequest& request, const Parameters& parameters,
-                                  Diagnostics& diagnostics);
+std::optional<double> read_number(const Node& node, const NumberRequest& request,
+                                  const Parameters& parameters, Diagnostics& diagnostics);
 
 /// The same, or an expression of the given variables.
 std::optional<Expression> read_expression(const Node& node, const NumberRequest& request,
-                                          const std::vector<std::string>& variables, const Parameters& parameters,
-                                          Diagnostics& diagnostics);
+                                          const std::vector<std::string>& variables,
+                                          const Parameters& parameters, Diagnostics& diagnostics);
 
 /// "a length (m)", "a number".
 std::string described_number(const NumberRequest& request);

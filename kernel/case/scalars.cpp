@@ -76,13 +76,15 @@ NumberText parse_number(std::string_view text, bool allow_infinite) {
     const std::size_t exponent_end = skip_digits(text, exponent);
     if (exponent_end > exponent) i = exponent_end;
   }
-  if (NumberText foreign = foreign_notation(text, digits_begin, i); foreign.status == NumberText::Status::refused)
+  if (NumberText foreign = foreign_notation(text, digits_begin, i);
+      foreign.status == NumberText::Status::refused)
     return foreign;
   if (integer_end - digits_begin > 1 && text[digits_begin] == '0') {
     std::size_t significant = digits_begin;
     while (significant + 1 < integer_end && text[significant] == '0') ++significant;
     return refused("has a leading zero, which other YAML readers take for octal; write " +
-                   std::string(text.substr(0, digits_begin)) + std::string(text.substr(significant, i - significant)));
+                   std::string(text.substr(0, digits_begin)) +
+                   std::string(text.substr(significant, i - significant)));
   }
   NumberText result;
   const std::string_view digits = text.substr(text[0] == '+' ? 1 : 0, i - (text[0] == '+' ? 1 : 0));

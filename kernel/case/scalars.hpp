@@ -13,10 +13,10 @@ namespace shoal::kernel {
 
 struct NumberText {
   enum class Status {
-    number,    ///< the whole text is a number
-    prefix,    ///< a number stands at the beginning; `end` is where it ends
-    none,      ///< does not begin like a number
-    refused    ///< looks like a number that means something else elsewhere; `remedy` says what to write
+    number,  ///< the whole text is a number
+    prefix,  ///< a number stands at the beginning; `end` is where it ends
+    none,    ///< does not begin like a number
+    refused  ///< looks like a number that means something else elsewhere; `remedy` says what to write
   };
   Status status = Status::none;
   double value = 0;

@@ -16,7 +16,9 @@
 namespace shoal::kernel {
 namespace {
 
-std::span<const shoal_parameter> parameters_of(const shoal_type& type) { return {type.parameters, type.n_parameters}; }
+std::span<const shoal_parameter> parameters_of(const shoal_type& type) {
+  return {type.parameters, type.n_parameters};
+}
 
 std::vector<std::string> keys_of(const shoal_type& type) {
   std::vector<std::string> keys;
@@ -44,14 +46,16 @@ void report_missing(const shoal_parameter& parameter, const shoal_type& type, co
                     Diagnostics& diagnostics) {
   std::vector<std::string> notes;
   if (parameter.doc != nullptr) notes.push_back(std::string(parameter.key) + ": " + parameter.doc);
-  if (parameter.example != nullptr) notes.push_back("example: " + std::string(parameter.key) + ": " + parameter.example);
+  if (parameter.example != nullptr)
+    notes.push_back("example: " + std::string(parameter.key) + ": " + parameter.example);
   diagnostics.error(place, "missing key '" + std::string(parameter.key) + "' in " + type.name, notes);
 }
 
 // Values that a table gives by itself: read like the case's own, so that they cannot mean anything else.
-shoal_value default_value(const shoal_parameter& parameter, const shoal_type& type, const SchemaContext& context) {
-  const Place place{std::make_shared<SourceText>(
-                        SourceText{std::string("<default of '") + parameter.key + "' in " + type.name + ">", {}}),
+shoal_value default_value(const shoal_parameter& parameter, const shoal_type& type,
+                          const SchemaContext& context) {
+  const Place place{std::make_shared<SourceText>(SourceText{
+                        std::string("<default of '") + parameter.key + "' in " + type.name + ">", {}}),
                     0, 0, 0};
   const Node node = read_yaml_value(parameter.default_text, place, context.diagnostics);
   return read_value(node, parameter, SHOAL_ORIGIN_DEFAULT, context);
@@ -63,7 +67,9 @@ std::string article(const std::string& word) {
 
 }  // namespace
 
-std::string TypeCatalogue::explain_unknown(shoal_type_kind /*kind*/, const std::string& /*name*/) const { return {}; }
+std::string TypeCatalogue::explain_unknown(shoal_type_kind /*kind*/, const std::string& /*name*/) const {
+  return {};
+}
 
 bool TypeCatalogue::is_excused(const std::string& /*name*/) const { return false; }
 
@@ -75,11 +81,13 @@ const char* const* ObjectStore::texts(const std::vector<std::string>& v) {
 
 const shoal_expression* const* ObjectStore::expressions(std::vector<Expression> v) {
   std::vector<const shoal_expression*> handles;
-  for (Expression& expression : v) handles.push_back(expressions_.emplace_back(std::move(expression)).handle());
+  for (Expression& expression : v)
+    handles.push_back(expressions_.emplace_back(std::move(expression)).handle());
   return expression_lists_.emplace_back(std::move(handles)).data();
 }
 
-const shoal_object* ObjectStore::object(const TypeEntry& type, std::vector<shoal_value> values, const Place& place) {
+const shoal_object* ObjectStore::object(const TypeEntry& type, std::vector<shoal_value> values,
+                                        const Place& place) {
   Object& stored = objects_.emplace_back(Object{shoal_object{}, std::move(values), type.table});
   stored.object.size = sizeof(shoal_object);
   stored.object.n_values = static_cast<std::uint32_t>(stored.values.size());
@@ -127,10 +135,11 @@ const shoal_object* read_object(const Node& values, const TypeEntry& type, const
   const Node map = values.is_map() ? values : Node();
   if (!values.is_map() && !values.is_null()) {
     const std::vector<std::string> keys = keys_of(table);
-    context.diagnostics.error(values.place(), "expected a map of the keys of " + std::string(table.name) + ", got " +
-                                                  values.described(),
-                              {(keys.empty() ? "it has no keys" : "keys: " + join(keys)) + "      (shoal describe " +
-                               table.name + ")"});
+    context.diagnostics.error(
+        values.place(),
+        "expected a map of the keys of " + std::string(table.name) + ", got " + values.described(),
+        {(keys.empty() ? "it has no keys" : "keys: " + join(keys)) + "      (shoal describe " + table.name +
+         ")"});
   } else {
     report_unknown_keys(map, keys_of(table), table.name, context.diagnostics);
   }
@@ -138,7 +147,8 @@ const shoal_object* read_object(const Node& values, const TypeEntry& type, const
   for (const shoal_parameter& parameter : parameters_of(table)) {
     const Node* node = map.find(parameter.key);
     if (node != nullptr) {
-      const std::uint32_t origin = is_command_line(node->place()) ? SHOAL_ORIGIN_COMMAND_LINE : SHOAL_ORIGIN_CASE;
+      const std::uint32_t origin =
+          is_command_line(node->place()) ? SHOAL_ORIGIN_COMMAND_LINE : SHOAL_ORIGIN_CASE;
       result.push_back(read_value(*node, parameter, origin, context));
     } else if (parameter.default_text != nullptr) {
       result.push_back(default_value(parameter, table, context));
@@ -194,7 +204,8 @@ const shoal_object* read_typed_object(const Node& node, shoal_type_kind kind, co
   for (const Node::Entry* entry : entries) keys.push_back("'" + entry->key + "'");
   const Place place = entries.size() > 1 ? entries[1]->key_place : node.place();
   std::vector<std::string> notes{"write '{type: {key: value}}'; is the line indented enough?"};
-  context.diagnostics.error(place, "expected one " + name + ", got " + (keys.empty() ? "nothing" : join(keys)), notes);
+  context.diagnostics.error(
+      place, "expected one " + name + ", got " + (keys.empty() ? "nothing" : join(keys)), notes);
   return nullptr;
 }
 

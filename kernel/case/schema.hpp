@@ -50,7 +50,9 @@ class ObjectStore {
 
   const char* text(std::string text) { return texts_.emplace_back(std::move(text)).c_str(); }
   const double* reals(std::vector<double> v) { return reals_.emplace_back(std::move(v)).data(); }
-  const std::int64_t* integers(std::vector<std::int64_t> v) { return integers_.emplace_back(std::move(v)).data(); }
+  const std::int64_t* integers(std::vector<std::int64_t> v) {
+    return integers_.emplace_back(std::move(v)).data();
+  }
   const char* const* texts(const std::vector<std::string>& v);
   const shoal_expression* const* expressions(std::vector<Expression> v);
   const shoal_object* const* objects(std::vector<const shoal_object*> v) {

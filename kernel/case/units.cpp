@@ -53,12 +53,26 @@ ut_system* unit_system() {
 // UDUNITS-2 understands single superscripts, but not "kg·m⁻³".
 std::string ascii_unit(std::string text) {
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 16> replacements{{
-      {"\u00B7", "."}, {"\u22C5", "."}, {"\u207B", "-"}, {"\u2070", "0"}, {"\u00B9", "1"}, {"\u00B2", "2"},
-      {"\u00B3", "3"}, {"\u2074", "4"}, {"\u2075", "5"}, {"\u2076", "6"}, {"\u2077", "7"}, {"\u2078", "8"},
-      {"\u2079", "9"}, {"\u00B5", "u"}, {"\u03BC", "u"}, {"\u03A9", "ohm"},
+      {"\u00B7", "."},
+      {"\u22C5", "."},
+      {"\u207B", "-"},
+      {"\u2070", "0"},
+      {"\u00B9", "1"},
+      {"\u00B2", "2"},
+      {"\u00B3", "3"},
+      {"\u2074", "4"},
+      {"\u2075", "5"},
+      {"\u2076", "6"},
+      {"\u2077", "7"},
+      {"\u2078", "8"},
+      {"\u2079", "9"},
+      {"\u00B5", "u"},
+      {"\u03BC", "u"},
+      {"\u03A9", "ohm"},
   }};
   for (const auto& [from, to] : replacements) {
-    for (std::size_t i = text.find(from); i != std::string::npos; i = text.find(from)) text.replace(i, from.size(), to);
+    for (std::size_t i = text.find(from); i != std::string::npos; i = text.find(from))
+      text.replace(i, from.size(), to);
   }
   return text;
 }
@@ -141,16 +155,19 @@ std::string described(const std::string& text, ut_unit* unit) {
 
 const std::vector<std::string>& common_units() {
   static const std::vector<std::string> units{
-      "m",   "cm", "mm",  "km",   "um",   "kg",   "g",    "s",    "ms",  "us",   "min",   "h",   "day", "m/s", "m/s2",
-      "Pa",  "kPa", "MPa", "GPa", "bar",  "atm",  "mmHg", "N",    "kN",  "J",    "W",     "K",   "degC", "Hz", "deg",
-      "rad", "rpm", "L",   "mL",  "mol",  "V",    "mV",   "A",    "S/m", "Pa s", "m2/s",  "kg/m3", "N/m", "%", "metre", "meter", "second",
-      "minute", "hour", "kilogram", "gram", "pascal", "newton", "joule", "watt", "kelvin", "degree", "radian"};
+      "m",    "cm",     "mm",     "km",    "um",    "kg",     "g",      "s",      "ms",   "us",
+      "min",  "h",      "day",    "m/s",   "m/s2",  "Pa",     "kPa",    "MPa",    "GPa",  "bar",
+      "atm",  "mmHg",   "N",      "kN",    "J",     "W",      "K",      "degC",   "Hz",   "deg",
+      "rad",  "rpm",    "L",      "mL",    "mol",   "V",      "mV",     "A",      "S/m",  "Pa s",
+      "m2/s", "kg/m3",  "N/m",    "%",     "metre", "meter",  "second", "minute", "hour", "kilogram",
+      "gram", "pascal", "newton", "joule", "watt",  "kelvin", "degree", "radian"};
   return units;
 }
 
 }  // namespace
 
-double convert_unit(double value, const std::string& from, const std::string& wanted, const std::string& shown) {
+double convert_unit(double value, const std::string& from, const std::string& wanted,
+                    const std::string& shown) {
   const std::lock_guard guard(lock());
   const Unit to = parse(wanted);
   if (!to) throw UnitError("the unit '" + wanted + "' of this parameter is not known to UDUNITS-2");
@@ -168,7 +185,8 @@ double convert_unit(double value, const std::string& from, const std::string& wa
 std::string si_unit(const std::string& unit, const std::string& shown) {
   const std::lock_guard guard(lock());
   const Unit parsed = parse(unit);
-  if (!parsed) throw UnitError("unknown unit '" + unit + "' in '" + shown + "'" + did_you_mean(unit, common_units()));
+  if (!parsed)
+    throw UnitError("unknown unit '" + unit + "' in '" + shown + "'" + did_you_mean(unit, common_units()));
   if (ut_is_dimensionless(parsed.get()) != 0) return "1";
   for (const Dimension& dimension : dimensions) {
     const Unit reference = parse(dimension.unit);

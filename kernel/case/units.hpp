@@ -20,7 +20,8 @@ class UnitError : public std::runtime_error {
 /// `value` in unit `from` as a number in unit `wanted`, e.g. (20, "degC", "K") -> 293.15. Units are UDUNITS-2 texts
 /// ("m2/s", "kg/m3", "Pa s"), "1" or "" without dimension; "deg" is the angle and superscripts are understood.
 /// `shown` is the quantity as the user wrote it. Throws UnitError.
-double convert_unit(double value, const std::string& from, const std::string& wanted, const std::string& shown);
+double convert_unit(double value, const std::string& from, const std::string& wanted,
+                    const std::string& shown);
 
 /// The SI unit of the same dimension: "m" for "mm", "m.s-1" for "km/h", "1" for "%". `shown` as above.
 /// Throws UnitError if the unit is not known.

@@ -99,7 +99,8 @@ class ValueReader {
       case SHOAL_FILE: return file(node);
       case SHOAL_OBJECT: return object(node);
       default:
-        error(node.place(), "'" + std::string(parameter_.key) + "' is of a kind that this version of Shoal cannot read");
+        error(node.place(),
+              "'" + std::string(parameter_.key) + "' is of a kind that this version of Shoal cannot read");
     }
   }
 
@@ -109,12 +110,14 @@ class ValueReader {
   }
 
   // Leaves one element for each entry.
-  std::vector<Node::Entry> entries_of(const Node& node, const std::string& what, std::vector<Node>& elements) const {
+  std::vector<Node::Entry> entries_of(const Node& node, const std::string& what,
+                                      std::vector<Node>& elements) const {
     elements.clear();
     std::vector<Node::Entry> entries;
     if (!node.is_map()) {
       std::vector<std::string> notes;
-      if (parameter_.example != nullptr) notes.push_back(std::string("example: ") + parameter_.key + ": " + parameter_.example);
+      if (parameter_.example != nullptr)
+        notes.push_back(std::string("example: ") + parameter_.key + ": " + parameter_.example);
       error(node.place(), "expected a map of " + what + ", got " + node.described(), notes);
       return entries;
     }
@@ -138,14 +141,16 @@ class ValueReader {
     for (const Node::Entry& entry : entries_of(node, "fields and their values", elements)) {
       const std::size_t dot = entry.key.find('.');
       if (!is_field_name(entry.key) || dot != std::string::npos) {
-        error(entry.key_place, dot == std::string::npos
-                                   ? "'" + entry.key + "' is not the name of a field" + did_you_mean(entry.key, shared_names())
-                                   : "give all components of '" + entry.key.substr(0, dot) + "' at once, as a list");
+        error(entry.key_place,
+              dot == std::string::npos
+                  ? "'" + entry.key + "' is not the name of a field" + did_you_mean(entry.key, shared_names())
+                  : "give all components of '" + entry.key.substr(0, dot) + "' at once, as a list");
         continue;
       }
       const SharedField* shared = find_shared_field(entry.key);
       request_.unit = shared != nullptr ? shared->unit.data() : nullptr;
-      const std::vector<Node> items = entry.value.is_sequence() ? entry.value.items() : std::vector<Node>{entry.value};
+      const std::vector<Node> items =
+          entry.value.is_sequence() ? entry.value.items() : std::vector<Node>{entry.value};
       if (shared != nullptr) check_components(entry, *shared, items.size());
       texts_.push_back(entry.key);
       integers_.push_back(static_cast<std::int64_t>(items.size()));
@@ -160,10 +165,12 @@ class ValueReader {
                                  : field.rank == SHOAL_SYMMETRIC   ? d * (d + 1) / 2
                                                                    : d * d;
     if (n == expected || d == 0) return;
-    const std::string wanted = expected == 1 ? "one number or expression" : "a list of " + std::to_string(expected) +
-                                                                                " numbers or expressions";
-    error(entry.value.place(), "expected " + wanted + " for the field '" + entry.key + "', got " +
-                                   (entry.value.is_sequence() ? "a list of " + std::to_string(n) : entry.value.described()));
+    const std::string wanted = expected == 1
+                                   ? "one number or expression"
+                                   : "a list of " + std::to_string(expected) + " numbers or expressions";
+    error(entry.value.place(),
+          "expected " + wanted + " for the field '" + entry.key + "', got " +
+              (entry.value.is_sequence() ? "a list of " + std::to_string(n) : entry.value.described()));
   }
 
   void boolean(const Node& node) {
@@ -187,18 +194,21 @@ class ValueReader {
 
   void integer(const Node& node) {
     if (!node.is_scalar()) return error(node.place(), "expected a whole number, got " + node.described());
-    const std::optional<double> value = read_number(node, {nullptr, false}, context_.parameters, context_.diagnostics);
+    const std::optional<double> value =
+        read_number(node, {nullptr, false}, context_.parameters, context_.diagnostics);
     if (!value) return fail();
     if (*value != std::round(*value) || std::fabs(*value) > 9007199254740992.0) {
       const bool literal = parse_number(node.text()).status == NumberText::Status::number;
-      return error(node.place(), "expected a whole number, got " +
-                                     (literal ? node.text() : "'" + node.text() + "' = " + format_number(*value)));
+      return error(node.place(),
+                   "expected a whole number, got " +
+                       (literal ? node.text() : "'" + node.text() + "' = " + format_number(*value)));
     }
     if (inside_bounds(*value, node)) integers_.push_back(static_cast<std::int64_t>(*value));
   }
 
   void real(const Node& node) {
-    const std::optional<double> value = read_number(node, request_, context_.parameters, context_.diagnostics);
+    const std::optional<double> value =
+        read_number(node, request_, context_.parameters, context_.diagnostics);
     if (!value) return fail();
     if (inside_bounds(*value, node)) reals_.push_back(*value);
   }
@@ -230,7 +240,8 @@ class ValueReader {
 
   void matrix(const Node& node) {
     for (const Node& row : components(node, list_of(" rows"))) {
-      for (const Node& item : components(row, "a row of " + std::to_string(context_.dimensions) + " numbers")) real(item);
+      for (const Node& item : components(row, "a row of " + std::to_string(context_.dimensions) + " numbers"))
+        real(item);
     }
   }
 
@@ -245,11 +256,13 @@ class ValueReader {
   void choice(const Node& node) {
     std::vector<std::string> words;
     for (std::uint32_t k = 0; k < parameter_.n_choices; ++k) words.emplace_back(parameter_.choices[k]);
-    if (!node.is_scalar()) return error(node.place(), "expected " + quoted_alternatives(words) + ", got " + node.described());
+    if (!node.is_scalar())
+      return error(node.place(), "expected " + quoted_alternatives(words) + ", got " + node.described());
     const auto found = std::find(words.begin(), words.end(), node.text());
     if (found == words.end())
-      return error(node.place(), "'" + node.text() + "' is not one of the choices of '" + parameter_.key + "'" +
-                                     did_you_mean(node.text(), words),
+      return error(node.place(),
+                   "'" + node.text() + "' is not one of the choices of '" + parameter_.key + "'" +
+                       did_you_mean(node.text(), words),
                    {"choices: " + join(words)});
     integers_.push_back(found - words.begin());
     texts_.push_back(*found);
@@ -258,8 +271,8 @@ class ValueReader {
   void expression(const Node& node) {
     static const std::vector<std::string> plane{"x", "y", "t"};
     static const std::vector<std::string> space{"x", "y", "z", "t"};
-    const std::optional<Expression> read = read_expression(node, request_, context_.dimensions == 2 ? plane : space,
-                                                           context_.parameters, context_.diagnostics);
+    const std::optional<Expression> read = read_expression(
+        node, request_, context_.dimensions == 2 ? plane : space, context_.parameters, context_.diagnostics);
     if (!read) return fail();
     if (!read->is_constant() || inside_bounds(read->value(), node)) expressions_.push_back(*read);
   }
@@ -280,11 +293,13 @@ class ValueReader {
   }
 
   void field(const Node& node) {
-    if (!node.is_scalar()) return error(node.place(), "expected the name of a field, got " + node.described());
+    if (!node.is_scalar())
+      return error(node.place(), "expected the name of a field, got " + node.described());
     if (!is_field_name(node.text()))
-      return error(node.place(), "'" + node.text() + "' is not the name of a field" +
-                                     did_you_mean(node.text(), shared_names()),
-                   {"write a field, e.g. velocity, or a component of it, e.g. velocity.x"});
+      return error(
+          node.place(),
+          "'" + node.text() + "' is not the name of a field" + did_you_mean(node.text(), shared_names()),
+          {"write a field, e.g. velocity, or a component of it, e.g. velocity.x"});
     texts_.push_back(node.text());
   }
 
@@ -317,10 +332,12 @@ class ValueReader {
     const bool too_high = (flags & SHOAL_PARAMETER_HAS_MAXIMUM) != 0 &&
                           (high_open ? value >= parameter_.maximum : value > parameter_.maximum);
     if (!too_low && !too_high) return true;
-    const std::string unit =
-        parameter_.unit == nullptr || std::string(parameter_.unit) == "1" ? "" : std::string(" ") + parameter_.unit;
+    const std::string unit = parameter_.unit == nullptr || std::string(parameter_.unit) == "1"
+                                 ? ""
+                                 : std::string(" ") + parameter_.unit;
     const std::string bound = format_number(too_low ? parameter_.minimum : parameter_.maximum) + unit;
-    const std::string relation = too_low ? (low_open ? "greater than " : "at least ") : (high_open ? "less than " : "at most ");
+    const std::string relation =
+        too_low ? (low_open ? "greater than " : "at least ") : (high_open ? "less than " : "at most ");
     const bool literal = parse_number(node.text()).status == NumberText::Status::number;
     error(node.place(), "'" + name_ + "' must be " + relation + bound + ", got " +
                             (literal ? node.text() : "'" + node.text() + "' = " + format_number(value)));
@@ -353,7 +370,8 @@ shoal_value read_value(const Node& node, const shoal_parameter& parameter, std::
 }
 
 std::string check_text_of(const shoal_parameter& parameter, const Node& node) {
-  if (parameter.kind == SHOAL_BODY || parameter.kind == SHOAL_FILE || parameter.kind == SHOAL_OBJECT) return {};
+  if (parameter.kind == SHOAL_BODY || parameter.kind == SHOAL_FILE || parameter.kind == SHOAL_OBJECT)
+    return {};
   const NoTypes types;
   const Parameters parameters;
   std::string first;

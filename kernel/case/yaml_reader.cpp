@@ -112,14 +112,14 @@ bool check_text(const Source& source, Diagnostics& diagnostics) {
       const auto c = static_cast<unsigned char>(line[i]);
       if (length == 0) {
         // Not quoted: the line would spoil the user's terminal.
-        diagnostics.error(Place{std::make_shared<SourceText>(SourceText{source.whole().file(), {}}), number + 1,
-                                static_cast<int>(i) + 1, 1},
+        diagnostics.error(Place{std::make_shared<SourceText>(SourceText{source.whole().file(), {}}),
+                                number + 1, static_cast<int>(i) + 1, 1},
                           "this byte is not UTF-8; save the file with the encoding UTF-8");
         return false;
       }
       if ((c < 0x20U && c != '\t') || c == 0x7FU) {
-        diagnostics.error(Place{std::make_shared<SourceText>(SourceText{source.whole().file(), {}}), number + 1,
-                                static_cast<int>(i) + 1, 1},
+        diagnostics.error(Place{std::make_shared<SourceText>(SourceText{source.whole().file(), {}}),
+                                number + 1, static_cast<int>(i) + 1, 1},
                           "a control character stands here; a case is plain text, so remove it");
         return false;
       }
@@ -161,7 +161,8 @@ class TreeBuilder : public YAML::EventHandler {
     const bool written = word == "~" || word == "null" || word == "Null" || word == "NULL";
     Place place = source_.place(spot.line, spot.column, static_cast<int>(word.size()));
     const std::string_view rest = line(spot.line).substr(static_cast<std::size_t>(spot.column));
-    const bool flow_item = !frames_.empty() && frames_.back().flow && frames_.back().kind == Node::Kind::sequence;
+    const bool flow_item =
+        !frames_.empty() && frames_.back().flow && frames_.back().kind == Node::Kind::sequence;
     if (!written && rest.substr(0, 1) == "," && (expects_key() || flow_item)) {
       diagnostics_.error(place, "a value is missing before ','");
       throw Stop{};
@@ -178,7 +179,8 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    const Place place = source_.place(mark.line, mark.column, static_cast<int>(word_at({mark.line, mark.column}).size()));
+    const Place place =
+        source_.place(mark.line, mark.column, static_cast<int>(word_at({mark.line, mark.column}).size()));
     if (expects_key()) {
       diagnostics_.error(place, "an alias cannot be a key; write the key out");
       throw Stop{};
@@ -306,8 +308,8 @@ class TreeBuilder : public YAML::EventHandler {
     for (std::size_t n = static_cast<std::size_t>(spot.line) + 1; n < source_.lines().size(); ++n)
       text += "\n" + source_.lines()[n];
     if (closing_quote(text) != std::string::npos) return;
-    diagnostics_.error(place.part(0, 1), std::string("this quote is never closed; add ") + rest[0] +
-                                             " at the end of the text");
+    diagnostics_.error(place.part(0, 1),
+                       std::string("this quote is never closed; add ") + rest[0] + " at the end of the text");
     throw Stop{};
   }
 
@@ -355,8 +357,9 @@ class TreeBuilder : public YAML::EventHandler {
   void check_tag(const YAML::Mark& mark, const std::string& tag) {
     if (tag.empty() || tag == "?" || tag == "!") return;
     const std::string word = word_at({mark.line, mark.column});
-    diagnostics_.error(source_.place(mark.line, mark.column, static_cast<int>(std::max<std::size_t>(word.size(), 1))),
-                       "YAML tags such as '!' are not used in cases; remove the tag");
+    diagnostics_.error(
+        source_.place(mark.line, mark.column, static_cast<int>(std::max<std::size_t>(word.size(), 1))),
+        "YAML tags such as '!' are not used in cases; remove the tag");
     throw Stop{};
   }
 
@@ -442,7 +445,9 @@ class TreeBuilder : public YAML::EventHandler {
       return;
     }
     frame.has_key = false;
-    const auto same = [&](const RawEntry& e) { return e.entry.key == frame.key && e.merge == frame.key_is_merge; };
+    const auto same = [&](const RawEntry& e) {
+      return e.entry.key == frame.key && e.merge == frame.key_is_merge;
+    };
     if (std::none_of(frame.entries.begin(), frame.entries.end(), same))
       frame.entries.push_back({{frame.key, frame.key_place, node}, frame.key_is_merge});
   }
@@ -466,8 +471,9 @@ class TreeBuilder : public YAML::EventHandler {
       const std::vector<Node> maps = value.is_sequence() ? value.items() : std::vector<Node>{value};
       for (const Node& map : maps) {
         if (!map.is_map()) {
-          diagnostics_.error(map.is_null() ? item.entry.key_place : map.place(),
-                             "'<<' merges maps, got " + map.described() + "; write '<<: *name' for a map '&name'");
+          diagnostics_.error(
+              map.is_null() ? item.entry.key_place : map.place(),
+              "'<<' merges maps, got " + map.described() + "; write '<<: *name' for a map '&name'");
           continue;
         }
         for (const Node::Entry& entry : map.entries()) {
@@ -491,7 +497,8 @@ class TreeBuilder : public YAML::EventHandler {
 
 std::string plain_sentence(const std::string& message, const std::string& line, std::size_t column) {
   const auto has = [&message](const char* part) { return message.find(part) != std::string::npos; };
-  const std::string character = column < line.size() ? "'" + line.substr(column, 1) + "'" : "the end of the line";
+  const std::string character =
+      column < line.size() ? "'" + line.substr(column, 1) + "'" : "the end of the line";
   if (has("illegal map value")) {
     const std::size_t indent = line.find_first_not_of(" -");
     if (line.substr(0, column).find(": ") != std::string::npos)
@@ -503,7 +510,8 @@ std::string plain_sentence(const std::string& message, const std::string& line, 
   if (has("end of map not found"))
     return "this line does not continue the map above it; align its key with the other keys of the map";
   if (has("end of sequence not found"))
-    return "this line does not continue the list above it; begin it with '- ' in the same column, or indent it less";
+    return "this line does not continue the list above it; begin it with '- ' in the same column, or indent "
+           "it less";
   if (has("illegal block entry")) return "a list item '- ' cannot begin here; put it on a line of its own";
   if (has("illegal map key")) return "a key cannot begin here; put it on a line of its own";
   if (has("illegal flow end")) return character + " closes nothing; remove it or add the opening bracket";
@@ -523,8 +531,10 @@ std::string plain_sentence(const std::string& message, const std::string& line, 
     return "a value has one anchor or is one alias, not both";
   if (has("referenced anchor is not defined"))
     return "no anchor of this name stands above; '*name' repeats a value marked '&name'";
-  if (has("tag") || has("TAG")) return "YAML tags such as '!' are not used in cases; put a text with '!' in quotes";
-  if (has("directive") || has("YAML version")) return "YAML directives ('%') are not used in cases; remove the line";
+  if (has("tag") || has("TAG"))
+    return "YAML tags such as '!' are not used in cases; put a text with '!' in quotes";
+  if (has("directive") || has("YAML version"))
+    return "YAML directives ('%') are not used in cases; remove the line";
   if (has("block scalar") || has("zero indentation"))
     return "after '|' or '>' the text begins on the next line, indented";
   if (has("bad file")) return "values are nested too deeply";
@@ -543,10 +553,12 @@ void report_syntax_error(const YAML::Exception& problem, const Source& source, c
   if (in_flow && bracket) {
     const std::string closing = bracket->second == '{' ? "'}'" : "']'";
     const std::string opened = std::string("'") + bracket->second + "'";
-    if (at_end || text.find_first_not_of(" \t", at) == std::string::npos || text.find(':', at) != std::string::npos) {
+    if (at_end || text.find_first_not_of(" \t", at) == std::string::npos ||
+        text.find(':', at) != std::string::npos) {
       Place place = bracket->first;
       place.length = place.line == 0 ? 0 : 1;
-      diagnostics.error(place, opened + " is never closed; add " + closing + " or a comma between its values");
+      diagnostics.error(place,
+                        opened + " is never closed; add " + closing + " or a comma between its values");
       return;
     }
     diagnostics.error(source.place(line, column, 1), "',' or " + closing + " is missing here",
@@ -555,7 +567,8 @@ void report_syntax_error(const YAML::Exception& problem, const Source& source, c
   }
   if (problem.msg.find("illegal flow end") != std::string::npos && bracket) {
     const std::string closing = bracket->second == '{' ? "'}'" : "']'";
-    diagnostics.error(source.place(line, column, 1), "expected " + closing + ", got '" + text.substr(at, 1) + "'",
+    diagnostics.error(source.place(line, column, 1),
+                      "expected " + closing + ", got '" + text.substr(at, 1) + "'",
                       {std::string("'") + bracket->second + "' was opened at " + bracket->first.text()});
     return;
   }
@@ -576,7 +589,8 @@ Node parse(const Source& source, Diagnostics& diagnostics) {
       for (std::size_t i = 1; i < source.lines().size(); ++i) {
         if (source.lines()[i].rfind("---", 0) == 0) line = static_cast<int>(i);
       }
-      diagnostics.error(source.place(line, 0, 3), "a second document begins here; a case is one document, remove '---'");
+      diagnostics.error(source.place(line, 0, 3),
+                        "a second document begins here; a case is one document, remove '---'");
     }
     return root;
   } catch (const Stop&) {

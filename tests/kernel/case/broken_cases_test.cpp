@@ -56,7 +56,8 @@ std::string messages(const std::filesystem::path& path) {
   const test::TestTypes types;
   if (file.readable()) check_case(file, types, diagnostics);
   std::string shown = diagnostics.format();
-  for (std::size_t at = shown.find(folder.string()); at != std::string::npos; at = shown.find(folder.string()))
+  for (std::size_t at = shown.find(folder.string()); at != std::string::npos;
+       at = shown.find(folder.string()))
     shown.replace(at, folder.string().size(), "FOLDER");
   return shown;
 }

@@ -37,7 +37,8 @@ class TestTypes : public TypeCatalogue {
     static const char* const equations[] = {"tait", "linear", "stiffened"};
 
     const auto shape_parameter = [&](const char* key, std::uint32_t flags) {
-      shoal_parameter p = parameter(SHOAL_OBJECT, key, nullptr, flags, nullptr, "A shape.", "{ball: {radius: 1}}");
+      shoal_parameter p =
+          parameter(SHOAL_OBJECT, key, nullptr, flags, nullptr, "A shape.", "{ball: {radius: 1}}");
       p.object_kind = SHOAL_TYPE_SHAPE;
       return p;
     };
@@ -50,10 +51,10 @@ class TestTypes : public TypeCatalogue {
                                            "Number of iterations.", "2");
     iterations.minimum = 1;
     iterations.maximum = 10;
-    shoal_parameter porosity = parameter(SHOAL_REAL, "porosity", "1",
-                                         SHOAL_PARAMETER_HAS_MINIMUM | SHOAL_PARAMETER_HAS_MAXIMUM |
-                                             SHOAL_PARAMETER_MAXIMUM_EXCLUDED,
-                                         nullptr, "Share of the volume that is empty.", "30 %");
+    shoal_parameter porosity = parameter(
+        SHOAL_REAL, "porosity", "1",
+        SHOAL_PARAMETER_HAS_MINIMUM | SHOAL_PARAMETER_HAS_MAXIMUM | SHOAL_PARAMETER_MAXIMUM_EXCLUDED, nullptr,
+        "Share of the volume that is empty.", "30 %");
     porosity.maximum = 1;
 
     add(SHOAL_TYPE_SHAPE, "ball", "A ball, a disc in two dimensions.",
@@ -67,15 +68,16 @@ class TestTypes : public TypeCatalogue {
          parameter(SHOAL_REAL, "thickness", "m", required | positive, nullptr, "Thickness.", "4*dx")});
     add(SHOAL_TYPE_SHAPE, "union", "What any of the shapes holds.", {shape_parameter("of", required | list)});
     add(SHOAL_TYPE_SHAPE, "polygon", "A polygon.",
-        {parameter(SHOAL_VECTOR, "vertices", "m", required | list, nullptr, "Its corners.", "[[0, 0], [1, 0], [0, 1]]")});
+        {parameter(SHOAL_VECTOR, "vertices", "m", required | list, nullptr, "Its corners.",
+                   "[[0, 0], [1, 0], [0, 1]]")});
     add(SHOAL_TYPE_MATERIAL, "fluid.liquid", "A liquid that is hardly compressible.",
         {parameter(SHOAL_REAL, "density", "kg/m3", required | positive, nullptr, "Density at rest.", "1000"),
          parameter(SHOAL_REAL, "viscosity", "m2/s", not_negative, "0", "Kinematic viscosity.", "1e-6"),
-         parameter(SHOAL_REAL, "sound_speed", "m/s", positive, nullptr, "Speed of sound; ten times the fastest flow.",
-                   "20"),
-         equation,
-         parameter(SHOAL_REAL, "temperature", "K", positive, "20 degC", "Temperature.", "293"),
-         parameter(SHOAL_BOOLEAN, "free_surface", nullptr, 0, "true", "Whether it has a free surface.", "false"),
+         parameter(SHOAL_REAL, "sound_speed", "m/s", positive, nullptr,
+                   "Speed of sound; ten times the fastest flow.", "20"),
+         equation, parameter(SHOAL_REAL, "temperature", "K", positive, "20 degC", "Temperature.", "293"),
+         parameter(SHOAL_BOOLEAN, "free_surface", nullptr, 0, "true", "Whether it has a free surface.",
+                   "false"),
          iterations, porosity,
          parameter(SHOAL_MATRIX, "permeability", "m2", 0, nullptr, "Permeability.", "[[1, 0], [0, 1]]"),
          parameter(SHOAL_FILE, "table", nullptr, 0, nullptr, "Table of the equation of state.", "water.csv"),
@@ -95,7 +97,8 @@ class TestTypes : public TypeCatalogue {
          parameter(SHOAL_REAL, "times", "s", list, "[]", "Times.", "[0.1, 0.2]")});
     add(SHOAL_TYPE_OUTPUT, "vtk", "Pictures.",
         {parameter(SHOAL_REAL, "every", "s", positive, nullptr, "Time between pictures.", "50 ms"),
-         parameter(SHOAL_FIELD, "fields", nullptr, list, "[]", "Fields beside the positions.", "[velocity]")});
+         parameter(SHOAL_FIELD, "fields", nullptr, list, "[]", "Fields beside the positions.",
+                   "[velocity]")});
     add(SHOAL_TYPE_PROBE, "maximum", "The largest value of a field.",
         {parameter(SHOAL_FIELD, "of", nullptr, required, nullptr, "The field.", "position.x"),
          parameter(SHOAL_BODY, "body", nullptr, required, nullptr, "The body.", "water")});
