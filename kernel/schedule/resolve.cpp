@@ -137,7 +137,6 @@ class Resolver {
       schedule_.outer_renewal = apart              ? "loops side by side renew their neighbours together"
                                 : place != nullptr ? "loop '" + place->name + "' is the outer step"
                                                    : "no loop asked for it";
-      if (place != nullptr) place->renews_neighbours = !apart;
     }
   }
 

@@ -28,7 +28,8 @@ Simulation::Implementation::Implementation(const SimulationSettings& what)
       stepper(schedule, executor, neighbourhood, health, what.dimensions),
       arena(threads_of(what.threads)) {
   if (what.threads > tbb::info::default_concurrency())
-    more_threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(what.threads));
+    more_threads.emplace(tbb::global_control::max_allowed_parallelism,
+                         static_cast<std::size_t>(what.threads));
   make_domain();
   if (what.sort_interval > 0) neighbourhood.set_sort_interval(what.sort_interval);
 }

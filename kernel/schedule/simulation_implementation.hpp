@@ -4,9 +4,11 @@
 // The parts of a run and what ties them together; private to kernel/schedule.
 #pragma once
 
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +56,8 @@ class Simulation::Implementation {
   Schedule schedule;
   Health health;
   Stepper stepper;
+  /// Only where more threads are asked for than the machine has cores.
+  std::optional<tbb::global_control> more_threads;
   tbb::task_arena arena;
   Phase phase = Phase::bodies;
 
