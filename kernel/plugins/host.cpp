@@ -104,18 +104,18 @@ namespace detail {
 
 void forget_failure_text() noexcept { has_failure = false; }
 
-void throw_plugin_failure(std::string_view plugin, std::string_view type, shoal_status status,
-                          const char* thrown) {
+void throw_plugin_failure(std::string_view plugin, std::string_view type, int status, const char* thrown) {
   std::string text = take_failure_text();
   if (thrown)
     text = std::string("an exception left the plugin, which its callbacks must not let happen: ") + thrown;
   if (status < SHOAL_OK || status > SHOAL_PHYSICS_FAILED) {
     text += (text.empty() ? "it returned the unknown status " : "; it returned the unknown status ") +
-            std::to_string(static_cast<int>(status));
+            std::to_string(status);
     status = SHOAL_ERROR;
   }
   if (text.empty()) text = "it failed without saying why (a plugin says why through host->fail)";
-  throw PluginFailure(std::string(plugin), std::string(type), status, std::move(text));
+  throw PluginFailure(std::string(plugin), std::string(type), static_cast<shoal_status>(status),
+                      std::move(text));
 }
 
 }  // namespace detail

@@ -41,7 +41,7 @@ std::string take_failure_text();
 
 namespace detail {
 void forget_failure_text() noexcept;
-[[noreturn]] void throw_plugin_failure(std::string_view plugin, std::string_view type, shoal_status status,
+[[noreturn]] void throw_plugin_failure(std::string_view plugin, std::string_view type, int status,
                                        const char* thrown);
 }  // namespace detail
 
@@ -50,13 +50,13 @@ void forget_failure_text() noexcept;
 /// the name of its type; both are used on failure only.
 template <class Call>
 void call_plugin(std::string_view plugin, std::string_view type, Call&& call) {
-  shoal_status status = SHOAL_OK;
+  int status = SHOAL_OK;  // not the enumeration: a plugin may return what is none of its values
   detail::forget_failure_text();
   try {
     if constexpr (std::is_void_v<decltype(call())>)
       std::forward<Call>(call)();
     else
-      status = std::forward<Call>(call)();
+      status = static_cast<int>(std::forward<Call>(call)());
   } catch (const std::exception& error) {
     detail::throw_plugin_failure(plugin, type, SHOAL_ERROR, error.what());
   } catch (...) {

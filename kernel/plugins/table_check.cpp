@@ -29,6 +29,10 @@ bool is_real(std::uint32_t kind) {
   return kind == SHOAL_REAL || kind == SHOAL_VECTOR || kind == SHOAL_MATRIX || kind == SHOAL_EXPRESSION ||
          kind == SHOAL_VECTOR_EXPRESSION;
 }
+std::string with_article(std::uint32_t kind) {
+  const std::string word = value_kind_text(kind);
+  return (std::string_view("aeiou").find(word[0]) == std::string_view::npos ? "a " : "an ") + word;
+}
 bool has_bounds(const shoal_parameter& p) {
   return (p.flags & (SHOAL_PARAMETER_HAS_MINIMUM | SHOAL_PARAMETER_HAS_MAXIMUM)) != 0;
 }
@@ -77,7 +81,7 @@ class ParameterTable {
     if (is_real(p.kind)) {
       if (is_blank(p.unit)) problem("a number needs a unit; without dimension it is \"1\"");
     } else if (p.unit && !(p.kind == SHOAL_INTEGER && std::strcmp(p.unit, "1") == 0)) {
-      problem("a " + value_kind_text(p.kind) + " has no unit");
+      problem(with_article(p.kind) + " has no unit");
     }
     if (p.unit && p.unit[0] != '\0' && (p.unit[0] == ' ' || p.unit[std::strlen(p.unit) - 1] == ' '))
       problem(std::string("there are blanks around the unit '") + p.unit + "'");
@@ -87,7 +91,7 @@ class ParameterTable {
     const bool low = p.flags & SHOAL_PARAMETER_HAS_MINIMUM;
     const bool high = p.flags & SHOAL_PARAMETER_HAS_MAXIMUM;
     if ((low || high) && !is_real(p.kind) && p.kind != SHOAL_INTEGER)
-      problem("a " + value_kind_text(p.kind) + " has no bounds");
+      problem(with_article(p.kind) + " has no bounds");
     if ((p.flags & SHOAL_PARAMETER_MINIMUM_EXCLUDED && !low) ||
         (p.flags & SHOAL_PARAMETER_MAXIMUM_EXCLUDED && !high))
       problem("a bound is excluded that is not there");
@@ -100,7 +104,7 @@ class ParameterTable {
 
   void check_choices(const shoal_parameter& p) {
     if (p.kind != SHOAL_CHOICE) {
-      if (p.n_choices > 0) problem("a " + value_kind_text(p.kind) + " has no choices");
+      if (p.n_choices > 0) problem(with_article(p.kind) + " has no choices");
       return;
     }
     if (p.n_choices == 0 || !p.choices) return problem("there is nothing to choose from");

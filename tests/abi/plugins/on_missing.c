@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Requires a plugin that is not there.
+#define PLUGIN_ID "on_missing"
+#define N_REQUIREMENTS 1
+#define REQUIREMENTS requirements
+#include <stddef.h>
+
+#include "shoal/abi.h"
+static const shoal_requirement requirements[] = {
+    {.size = sizeof(shoal_requirement), .id = "nowhere", .minimum_version = NULL, .below_version = NULL}};
+#include "base.h"
