@@ -125,8 +125,8 @@ std::string plural(std::size_t n, const std::string& word) {
 void Diagnostics::add(Diagnostic item) {
   // A value that is used twice through an alias would be complained about twice.
   for (const Diagnostic& other : items_) {
-    if (other.message == item.message && other.place.source == item.place.source &&
-        other.place.line == item.place.line && other.place.column == item.place.column)
+    if (other.place.line == item.place.line && other.place.column == item.place.column &&
+        other.place.source == item.place.source && other.message == item.message)
       return;
   }
   if (item.severity == Severity::error) ++n_errors_;
