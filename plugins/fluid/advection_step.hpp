@@ -58,6 +58,8 @@ struct TransportShift : PairOperator<TransportShift> {
 
 // The walls' share; runs after TransportShift.
 struct WallTransportShift : PairOperator<WallTransportShift> {
+  static constexpr bool skips_lonely = true;
+
   In<Scalar> wall_volume{"volume", neighbours_only};
   InOut<Vector> shift{"transport_shift", unit("m"), doc("Shift of the particle in this advection step."),
                       derived};

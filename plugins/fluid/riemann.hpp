@@ -4,7 +4,8 @@
 // Continuity and momentum with the low-dissipation Riemann solver (Zhang, Hu, Adams 2017):
 //   dv_i/dt   = -(2/rho_i) sum_j V_j P* W' e_ij,        P* = (p_i + p_j)/2 + beta rho c (u_L - u_R)/2
 //   drho_i/dt =  2 rho_i sum_j V_j (v_i - v*).e_ij W',  v*.e_ij = (v_i + v_j).e_ij/2 - (p_i - p_j)/(2 rho c)
-//   u_L - u_R = -(v_i - v_j).e_ij,   beta = min(3 max(u_L - u_R, 0)/c, 1): no dissipation in expansion.
+//   u_L - u_R = -(v_i - v_j).e_ij,   beta = min(max(3 (u_L - u_R)/c, beta0), 1)
+// The paper has beta0 = 0: no dissipation in expansion, and next to none where the flow is slow.
 // Densities differ by about 1 %, so the averages are plain ones, which saves a division and the densities of the
 // neighbours. The terms are gathered where their fields are read anyway: those of the pressure (P* without beta, and
 // its jump in v*) in PressureForce, those of the velocity in VelocityDivergence.
@@ -61,15 +62,16 @@ struct VelocityDivergence : PairOperator<VelocityDivergence> {
   InOut<Scalar> density_rate{"density_rate", unit("kg/m3/s"), doc("Rate of change of the density.")};
 
   double sound_speed = 0;     // m/s
-  double limiter = 3.0;       // eta of the paper
+  double limiter = 3.0;      // eta of the paper
+  double least = 0.0;         // smallest beta, also in expansion
   double gradient_scale = 1;  // 1 / slope of lattice_sums()
 
   auto pair(const auto& p) const {
     const auto weight = p.j(volume) * p.dW_over_r();
     const auto v_r = dot(p.i(velocity) - p.j(velocity), p.r_ij());
-    const auto approach = max(0.0, -v_r / p.r());  // u_L - u_R
-    const auto beta = min(1.0, (limiter / sound_speed) * approach);
-    return sums(weight * v_r, (weight * beta * approach) * p.r_ij());
+    const auto jump = -v_r / p.r();  // u_L - u_R
+    const auto beta = min(1.0, max(least, (limiter / sound_speed) * jump));
+    return sums(weight * v_r, (weight * beta * jump) * p.r_ij());
   }
   void particle(auto i, auto divergence, auto dissipation) const {
     density_rate[i] += gradient_scale * density[i] * divergence;

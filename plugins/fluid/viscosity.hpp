@@ -44,6 +44,8 @@ struct ViscousForce : PairOperator<ViscousForce> {
 
 // The share of the no-slip walls.
 struct WallViscousForce : PairOperator<WallViscousForce> {
+  static constexpr bool skips_lonely = true;
+
   In<Vector> velocity{"velocity", own_only};
   In<Scalar> density{"density", own_only};
   In<Vector> wall_velocity{"velocity", neighbours_only};

@@ -33,6 +33,8 @@ auto wall_pressure(double rho, const P& fluid_pressure, const A& acceleration, c
 
 // The walls' share of PressureForce. Runs after it.
 struct WallPressureForce : PairOperator<WallPressureForce> {
+  static constexpr bool skips_lonely = true;
+
   In<Scalar> pressure{"pressure", own_only};
   In<Scalar> density{"density", own_only};
   In<Vector> acceleration{"acceleration", own_only};
@@ -54,6 +56,8 @@ struct WallPressureForce : PairOperator<WallPressureForce> {
 
 // The walls' share of VelocityDivergence. Runs after it.
 struct WallVelocityDivergence : PairOperator<WallVelocityDivergence> {
+  static constexpr bool skips_lonely = true;
+
   In<Vector> velocity{"velocity", own_only};
   In<Scalar> density{"density", own_only};
   In<Vector> wall_velocity{"velocity", neighbours_only};

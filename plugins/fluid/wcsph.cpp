@@ -77,6 +77,7 @@ struct FluidBody {
   }
 
   void attach_density() const {
+    if (!physics.density_summation) return;
     const Target target = itself();
     const auto setup = [&](auto& op) {
       op.reference_density = density;
@@ -136,7 +137,10 @@ struct FluidBody {
       op.limiter = physics.dissipation_limiter;
       op.gradient_scale = 1.0 / lattice.slope;
     };
-    b.attach<VelocityDivergence>("fluid.divergence", at_continuity, itself(), riemann);
+    b.attach<VelocityDivergence>("fluid.divergence", at_continuity, itself(), [&](auto& op) {
+      riemann(op);
+      op.least = physics.least_dissipation;
+    });
     if (has_walls())
       b.attach<WallVelocityDivergence>("fluid.divergence.walls", at_continuity, and_walls(), riemann);
     b.attach<DensityCorrector>("fluid.correct_density", at_continuity, itself());

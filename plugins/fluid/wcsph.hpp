@@ -35,6 +35,10 @@ struct Wcsph final : Physics {
       "Whether the fluid has a free surface. Without one, density is summed everywhere and "
       "particles are kept evenly spread.",
       default_to(true)};
+  Param<bool> density_summation{"density_summation", nullptr,
+                                "Whether density is re-initialised by summation in each advection step, which keeps "
+                                "the errors of the continuity equation from adding up in violent flows.",
+                                default_to(true)};
   Param<double> advection_cfl{"advection_cfl", "1", "Advection step over h / |v|.", positive,
                               default_to(0.25)};
   Param<double> acoustic_cfl{"acoustic_cfl", "1", "Acoustic step over h / (c + |v|).", positive,
@@ -43,6 +47,10 @@ struct Wcsph final : Physics {
       "dissipation_limiter", "1",
       "Factor eta of the Riemann solver's limiter min(eta (u_L - u_R) / c, 1); larger damps more.",
       non_negative, default_to(3.0)};
+  Param<double> least_dissipation{"least_dissipation", "1",
+                                  "Smallest factor of the Riemann solver's dissipation, from 0 (the limiter alone) to "
+                                  "1 (an upwind scheme).",
+                                  between(0.0, 1.0), default_to(0.0)};
   Param<double> shift_strength{"shift_strength", "1",
                                "Factor of the shift where there is no free surface; 0: none.", non_negative,
                                default_to(0.5)};

@@ -106,13 +106,7 @@ struct Pack {
 
   /// Sum of all lanes in one fixed order: the upper half is added to the lower half until one lane is left,
   /// ((0+4)+(2+6)) + ((1+5)+(3+7)) for 8 lanes, (0+2)+(1+3) for 4.
-  friend double horizontal_sum(Pack a) {
-    double x[simd::lanes];
-    a.store(x);
-    for (int half = simd::lanes / 2; half > 0; half /= 2)
-      for (int k = 0; k < half; ++k) x[k] += x[k + half];
-    return x[0];
-  }
+  friend double horizontal_sum(Pack a) { return simd::sum(a.v); }
   /// Smallest and largest lane.
   friend double horizontal_min(Pack a) {
     double x = a[0];

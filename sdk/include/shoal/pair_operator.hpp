@@ -18,7 +18,10 @@
 // `pair` is compiled for packs of neighbours (SIMD), for 2D and 3D and for each smoothing kernel; branch on data
 // with select(condition, a, b). It returns a number, a Vec, a Mat, or sums(a, b, ...) of these, and `particle` gets
 // their sums over all neighbours. The loop runs over the rows of the neighbour lists in their order, so results do
-// not depend on the number of threads. Optional members as for ParticleOperator.
+// not depend on the number of threads. Optional members as for ParticleOperator, and
+//     static constexpr bool skips_lonely = true;
+// for operators whose `particle` changes nothing when the sum is zero: particles without neighbours are passed over,
+// which is most of them next to a wall.
 #pragma once
 
 #include <cstdint>
@@ -169,6 +172,8 @@ class PairOperator : public OperatorBase {
   void rows(const Kernel& kernel, const shoal_chunk& chunk) const {
     using Result = decltype(self().pair(std::declval<const Pair<D, R, Kernel>&>()));
     for (std::uint64_t index = chunk.begin; index < chunk.end; ++index) {
+      if constexpr (requires { Derived::skips_lonely; })
+        if (is_lonely(index)) continue;
       const Particle<D> i{index, chunk.partial};
       Result sum{};
       for (std::size_t k = 0; k < n_relations(); ++k) add_row<R>(kernel, k, i, sum);
@@ -193,6 +198,12 @@ class PairOperator : public OperatorBase {
         pair_loop::add_lanes(sum, self().pair(p), first_lanes(static_cast<std::int64_t>(n) - m));
       }
     }
+  }
+
+  bool is_lonely(std::uint64_t i) const {
+    for (std::size_t k = 0; k < n_relations(); ++k)
+      if (neighbours(k).counts[i] != 0) return false;
+    return true;
   }
 
   const Derived& self() const { return static_cast<const Derived&>(*this); }

@@ -45,6 +45,11 @@ inline Raw abs(Raw a) {
   return _mm512_castsi512_pd(
       _mm512_and_epi64(_mm512_castpd_si512(a), _mm512_set1_epi64(0x7FFFFFFFFFFFFFFFLL)));
 }
+inline double sum(Raw a) {
+  const __m256d four = __builtin_shufflevector(a, a, 0, 1, 2, 3) + __builtin_shufflevector(a, a, 4, 5, 6, 7);
+  const __m128d two = __builtin_shufflevector(four, four, 0, 1) + __builtin_shufflevector(four, four, 2, 3);
+  return two[0] + two[1];
+}
 inline RawMask mask_all(bool b) { return b ? full_mask : RawMask{0}; }
 inline RawMask mask_and(RawMask a, RawMask b) { return static_cast<RawMask>(a & b); }
 inline RawMask mask_or(RawMask a, RawMask b) { return static_cast<RawMask>(a | b); }
@@ -91,6 +96,10 @@ inline Raw min(Raw a, Raw b) { return _mm256_min_pd(a, b); }
 inline Raw max(Raw a, Raw b) { return _mm256_max_pd(a, b); }
 inline Raw sqrt(Raw a) { return _mm256_sqrt_pd(a); }
 inline Raw abs(Raw a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
+inline double sum(Raw a) {
+  const __m128d two = _mm256_castpd256_pd128(a) + _mm256_extractf128_pd(a, 1);
+  return two[0] + two[1];
+}
 inline RawMask mask_all(bool b) { return _mm256_castsi256_pd(_mm256_set1_epi64x(b ? -1 : 0)); }
 inline RawMask mask_and(RawMask a, RawMask b) { return _mm256_and_pd(a, b); }
 inline RawMask mask_or(RawMask a, RawMask b) { return _mm256_or_pd(a, b); }
@@ -177,6 +186,10 @@ inline Raw abs(Raw a) {
   const Long2 magnitude = {0x7FFFFFFFFFFFFFFFLL, 0x7FFFFFFFFFFFFFFFLL};
   return {{bits_to_double(bits_to_long(a.half[0]) & magnitude),
            bits_to_double(bits_to_long(a.half[1]) & magnitude)}};
+}
+inline double sum(Raw a) {
+  const Double2 two = a.half[0] + a.half[1];
+  return two[0] + two[1];
 }
 inline RawMask mask_all(bool b) {
   const std::int64_t x = b ? -1 : 0;
