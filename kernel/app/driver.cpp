@@ -63,6 +63,7 @@ void Driver::start() {
   session_.recorder().open(folder_.path());
   session_.run().initialise();
   session_.recorder().start(session_.run());
+  folder_.remove_replaced();
   tell_start("run");
 }
 
@@ -74,7 +75,8 @@ void Driver::resume() {
   for (const std::filesystem::path& candidate : candidates) {
     if (!load(candidate)) continue;
     checkpoints_.remove_newer_than(candidate);
-    folder_.write_case(effective_case_);
+    // The file of the first session says where each value came from; it stays if it is still true.
+    if (!differences(read_whole_file(folder_.case_file()), effective_case_).empty()) folder_.write_case(effective_case_);
     folder_.write_summary(to_json(summary("running")));
     tell_start("resume");
     return;

@@ -14,20 +14,19 @@
 namespace shoal::kernel {
 namespace {
 
-bool is_results(const std::filesystem::path& folder) {
+// Marks a folder of results from the first moment, and keeps two runs from writing to the same.
+std::filesystem::path lock_file(const std::filesystem::path& folder) { return folder / ".shoal"; }
+
+bool is_file(const std::filesystem::path& path) {
   std::error_code none;
-  return std::filesystem::is_regular_file(folder / "case.yaml", none) &&
-         std::filesystem::is_regular_file(folder / "summary.json", none);
+  return std::filesystem::is_regular_file(path, none);
 }
 
-std::filesystem::path lock_file(const std::filesystem::path& folder) { return folder / ".lock"; }
-
-// Nothing but what a kill before the first results leaves.
+// Nothing, or what is left of a run that was killed before its first results.
 bool holds_nothing(const std::filesystem::path& folder) {
   std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
-    if (entry.path() != lock_file(folder)) return false;
-  return true;
+  if (is_file(lock_file(folder)) && !is_file(folder / "summary.json")) return true;
+  return std::filesystem::is_empty(folder, none);
 }
 
 std::filesystem::path free_sibling(const std::filesystem::path& folder) {
@@ -55,7 +54,7 @@ ResultFolder::ResultFolder(std::filesystem::path path) : path_(std::move(path)) 
 }
 
 ResultFolder::ResultFolder(ResultFolder&& other) noexcept
-    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
+    : path_(std::move(other.path_)), replaced_(std::move(other.replaced_)), lock_(std::exchange(other.lock_, -1)) {}
 
 ResultFolder::~ResultFolder() {
   if (lock_ >= 0) ::close(lock_);
@@ -66,21 +65,21 @@ void ResultFolder::check_free(const std::filesystem::path& folder, bool replace)
   if (!std::filesystem::exists(path)) return;
   if (!std::filesystem::is_directory(path))
     throw FolderError("'" + path.string() + "' is a file; results need a folder (--output FOLDER)");
+  if (is_file(lock_file(path))) const ResultFolder probe(path);  // not while another run writes there
   if (holds_nothing(path)) return;
-  if (!is_results(path))
+  if (!is_file(lock_file(path)))
     throw FolderError("'" + path.string() + "' exists and holds something else than results of Shoal; choose another " +
                       "folder with --output FOLDER");
   if (!replace)
     throw FolderError("'" + path.string() + "' holds results already; replace them with --force, write elsewhere with " +
                       "--output FOLDER, or go on with them: shoal resume " + path.string());
-  const ResultFolder probe(path);  // not while another run writes there
 }
 
 ResultFolder ResultFolder::make(const std::filesystem::path& folder, bool replace) {
   check_free(folder, replace);
   const std::filesystem::path path = normal(folder);
   std::filesystem::path aside;
-  if (std::filesystem::exists(path) && !holds_nothing(path)) {
+  if (std::filesystem::exists(path) && !std::filesystem::is_empty(path)) {
     aside = free_sibling(path);
     std::error_code error;
     std::filesystem::rename(path, aside, error);
@@ -88,9 +87,14 @@ ResultFolder ResultFolder::make(const std::filesystem::path& folder, bool replac
   }
   make_folder(path);
   ResultFolder result(path);
-  std::error_code ignored;
-  if (!aside.empty()) std::filesystem::remove_all(aside, ignored);
+  result.replaced_ = std::move(aside);
   return result;
+}
+
+void ResultFolder::remove_replaced() {
+  std::error_code ignored;
+  if (!replaced_.empty()) std::filesystem::remove_all(replaced_, ignored);
+  replaced_.clear();
 }
 
 ResultFolder ResultFolder::reopen(const std::filesystem::path& folder) {

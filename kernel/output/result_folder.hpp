@@ -28,8 +28,7 @@ class ResultFolder {
   /// Whether a new run could be written there: to be asked before anything expensive. Throws FolderError.
   static void check_free(const std::filesystem::path& folder, bool replace);
 
-  /// Takes the folder for a new run; earlier results are put aside and removed at the end. Throws FolderError,
-  /// OutputError.
+  /// Takes the folder for a new run; earlier results are put aside. Throws FolderError, OutputError.
   static ResultFolder make(const std::filesystem::path& folder, bool replace);
   /// Takes the folder of an earlier run to go on with it. Throws FolderError.
   static ResultFolder reopen(const std::filesystem::path& folder);
@@ -44,12 +43,15 @@ class ResultFolder {
   std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }
   std::filesystem::path failure() const { return path_ / "failure"; }
 
+  /// Removes what was put aside: once the new run has begun.
+  void remove_replaced();
+
   void write_case(const std::string& text) const;
   void write_summary(const std::string& text) const;
 
  private:
   explicit ResultFolder(std::filesystem::path path);
-  std::filesystem::path path_;
+  std::filesystem::path path_, replaced_;
   int lock_ = -1;
 };
 

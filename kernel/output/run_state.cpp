@@ -36,13 +36,24 @@ bool is_physics(const std::string& path) {
   });
 }
 
-Flat flat_physics(const std::string& text, const std::string& name) {
+Flat flat_case(const std::string& text, const std::string& name) {
   Diagnostics diagnostics;
-  Flat all, physics;
-  flatten(read_yaml_text(text, name, diagnostics), "", all);
-  for (const auto& [path, value] : all)
-    if (is_physics(path)) physics[path] = value;
-  return physics;
+  Flat flat;
+  flatten(read_yaml_text(text, name, diagnostics), "", flat);
+  return flat;
+}
+
+std::vector<std::string> compare(const Flat& before, const Flat& now, bool (*counts)(const std::string&)) {
+  std::vector<std::string> lines;
+  for (const auto& [path, value] : before) {
+    const auto other = now.find(path);
+    if (!counts(path)) continue;
+    if (other == now.end()) lines.push_back(path + ": " + value + " -> (none)");
+    else if (other->second != value) lines.push_back(path + ": " + value + " -> " + other->second);
+  }
+  for (const auto& [path, value] : now)
+    if (before.count(path) == 0 && counts(path)) lines.push_back(path + ": (none) -> " + value);
+  return lines;
 }
 
 }  // namespace
@@ -79,17 +90,12 @@ RunState state_from_text(const std::string& text) {
   }
 }
 
+std::vector<std::string> differences(const std::string& before, const std::string& now) {
+  return compare(flat_case(before, "<before>"), flat_case(now, "<now>"), [](const std::string&) { return true; });
+}
+
 std::vector<std::string> differing_physics(const std::string& before, const std::string& now) {
-  const Flat old = flat_physics(before, "<checkpoint>"), current = flat_physics(now, "<case>");
-  std::vector<std::string> lines;
-  for (const auto& [path, value] : old) {
-    const auto other = current.find(path);
-    if (other == current.end()) lines.push_back(path + ": " + value + " -> (none)");
-    else if (other->second != value) lines.push_back(path + ": " + value + " -> " + other->second);
-  }
-  for (const auto& [path, value] : current)
-    if (old.count(path) == 0) lines.push_back(path + ": (none) -> " + value);
-  return lines;
+  return compare(flat_case(before, "<before>"), flat_case(now, "<now>"), is_physics);
 }
 
 }  // namespace shoal::kernel

@@ -23,8 +23,10 @@ std::string to_text(const RunState& state);
 /// Throws CheckpointError.
 RunState state_from_text(const std::string& text);
 
-/// What in two effective cases makes them different computations, as lines "bodies.water.resolution: 0.02 -> 0.01".
-/// Titles, the end of the run, outputs, probes and references may differ.
+/// What differs between two effective cases, as lines "bodies.water.resolution: 0.02 -> 0.01".
+std::vector<std::string> differences(const std::string& before, const std::string& now);
+/// Of these, what makes them different computations: titles, the end of the run, outputs, probes and references may
+/// differ.
 std::vector<std::string> differing_physics(const std::string& before, const std::string& now);
 
 }  // namespace shoal::kernel

@@ -5,9 +5,13 @@
 // time step that depends on the particles, a field on demand, a failure), so that it is tested without the real ones.
 //
 //   dv_i/dt = g + (k / m) sum_j max(0, 1 - r / r_c) e_ij - c v_i        semi-implicit Euler
+#include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <string>
+#include <thread>
 
 #include "shoal/shoal.hpp"
 
@@ -112,10 +116,43 @@ class Falling : public Physics {
   }
 };
 
+// A table for each snapshot, renamed into place; optionally slow, so that a kill meets it at work.
+class Tables final : public Output {
+ public:
+  void begin(const Run& run) override {
+    folder_ = run.folder;
+    for (std::uint64_t k = run.resumed_sequence; std::filesystem::remove(file(k)); ++k) {
+    }
+  }
+  void write(const shoal_snapshot& snapshot) override {
+    const std::filesystem::path part = folder_ / "part";
+    std::ofstream stream(part);
+    stream.precision(17);
+    for (const shoal_snapshot_body& body : bodies_of(snapshot)) {
+      stream << body.name << ' ' << snapshot.time << ' ' << body.n_particles;
+      for (const shoal_snapshot_field& field : fields_of(body)) stream << ' ' << field.name << ':' << field.components;
+      stream << '\n';
+      std::this_thread::sleep_for(std::chrono::duration<double>(pause.value()));
+      for (std::uint64_t i = 0; i < body.n_particles; ++i) {
+        stream << body.id[i] << ' ' << body.position[2 * i] << ' ' << body.position[2 * i + 1] << '\n';
+      }
+    }
+    stream << "end\n";
+    stream.close();
+    std::filesystem::rename(part, file(snapshot.sequence));
+  }
+
+ private:
+  std::filesystem::path file(std::uint64_t sequence) const { return folder_ / (std::to_string(sequence) + ".txt"); }
+  Param<double> pause{"pause", "s", "Time that writing takes.", non_negative, default_to(0.0)};
+  std::filesystem::path folder_;
+};
+
 }  // namespace grains
 
 SHOAL_PLUGIN(grains, "1.0.0") {
   summary("Soft grains, to test the program with.");
   add<grains::Matter>("grains.matter", "What grains are made of.");
   add<grains::Falling>("grains.falling", "Grains that fall on a floor.");
+  add<grains::Tables>("grains.tables", "The particles as text.");
 }
