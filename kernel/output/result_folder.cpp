@@ -29,6 +29,11 @@ bool holds_nothing(const std::filesystem::path& folder) {
   return std::filesystem::is_empty(folder, none);
 }
 
+// Copies may have lost the mark.
+bool is_results(const std::filesystem::path& folder) {
+  return is_file(lock_file(folder)) || (is_file(folder / "case.yaml") && is_file(folder / "summary.json"));
+}
+
 std::filesystem::path free_sibling(const std::filesystem::path& folder) {
   for (int k = 1;; ++k) {
     std::filesystem::path aside = folder;
@@ -67,7 +72,7 @@ void ResultFolder::check_free(const std::filesystem::path& folder, bool replace)
     throw FolderError("'" + path.string() + "' is a file; results need a folder (--output FOLDER)");
   if (is_file(lock_file(path))) const ResultFolder probe(path);  // not while another run writes there
   if (holds_nothing(path)) return;
-  if (!is_file(lock_file(path)))
+  if (!is_results(path))
     throw FolderError("'" + path.string() + "' exists and holds something else than results of Shoal; choose another " +
                       "folder with --output FOLDER");
   if (!replace)

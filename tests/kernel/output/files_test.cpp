@@ -165,6 +165,7 @@ TEST_CASE("folders of results: never two runs, never lost by mistake") {
   {
     ResultFolder again = ResultFolder::make(folder, true);
     CHECK(read_whole_file("folders/a.replaced-1/summary.json") == "{}\n");
+    again.write_case("shoal: 1\n");
     again.write_summary("{new}\n");
     again.remove_replaced();
     CHECK_FALSE(fs::exists("folders/a.replaced-1"));
@@ -173,6 +174,11 @@ TEST_CASE("folders of results: never two runs, never lost by mistake") {
   CHECK(read_whole_file(folder / "summary.json") == "{new}\n");
   CHECK_THROWS_AS(ResultFolder::reopen("folders/none"), FolderError);
   CHECK_THROWS_WITH_AS(ResultFolder::reopen("folders"), doctest::Contains("no case.yaml"), FolderError);
+
+  fs::remove(folder / ".shoal");  // as after a copy without hidden files
+  CHECK_THROWS_WITH_AS(ResultFolder::check_free(folder, false), doctest::Contains("--force"), FolderError);
+  CHECK_NOTHROW(ResultFolder::check_free(folder, true));
+  write(folder / ".shoal", "");
 
   // A run that was killed before its first results left nothing that is worth asking for.
   fs::remove(folder / "summary.json");
