@@ -106,7 +106,8 @@ InitialField initial_field(const InitialValue& value, int dimensions) {
   return {value.field, rank_of(value, dimensions), evaluate, value.place, false};
 }
 
-// What the body's shape knows of its particles, for operators that ask.
+// What the body's shape knows of its particles, for operators that ask. Of a shell it is the face that it turns to
+// what it lines, also for the particles at its back.
 void add_fields_of_shape(const BodyModel& body, int dimensions, std::vector<InitialField>& fields) {
   if (body.shape == nullptr) return;
   const ShapePtr shape = make_shape(*body.shape, dimensions);
@@ -121,7 +122,7 @@ void add_fields_of_shape(const BodyModel& body, int dimensions, std::vector<Init
   fields.push_back({"normal", SHOAL_RANK_VECTOR,
                     [=](std::uint64_t n, const double* positions, double* out) {
                       for_each_point(n, positions, [&](std::uint64_t i, const Point& point) {
-                        const Point normal = shape->normal(point);
+                        const Point normal = shape->face(point).normal;
                         std::copy_n(normal.begin(), dimensions, out + i * static_cast<std::uint64_t>(dimensions));
                       });
                     },
@@ -129,7 +130,7 @@ void add_fields_of_shape(const BodyModel& body, int dimensions, std::vector<Init
   fields.push_back({"signed_distance", SHOAL_SCALAR,
                     [=](std::uint64_t n, const double* positions, double* out) {
                       for_each_point(n, positions, [&](std::uint64_t i, const Point& point) {
-                        out[i] = shape->signed_distance(point);
+                        out[i] = shape->face(point).distance;
                       });
                     },
                     body.place, true});

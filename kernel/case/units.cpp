@@ -6,7 +6,9 @@
 
 #include <udunits2.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <memory>
 #include <mutex>
 #include <string_view>
@@ -80,7 +82,12 @@ std::string ascii_unit(std::string text) {
 // Null if the text is not a unit. Origins ("m @ 5"), logarithms ("lg(re mW)") and time stamps ("s since 1970") are
 // grammar of UDUNITS-2 that no case needs and a slip of the pen can reach.
 Unit parse(const std::string& text) {
-  if (text.find_first_of("@()") != std::string::npos || text.find(" since ") != std::string::npos ||
+  const auto belongs = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return std::isalnum(byte) != 0 || byte >= 0x80U ||
+           std::string_view(" _%.*/^-+'").find(c) != std::string_view::npos;
+  };
+  if (!std::all_of(text.begin(), text.end(), belongs) || text.find(" since ") != std::string::npos ||
       text.find(" from ") != std::string::npos)
     return nullptr;
   return Unit(ut_parse(unit_system(), ascii_unit(text).c_str(), UT_UTF8));
