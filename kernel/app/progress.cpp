@@ -68,8 +68,9 @@ void Progress::show(const Simulation& run, Clock::time_point now) {
                     {"seconds_left", left}});
     return;
   }
+  // Fits the 80 columns of a small terminal.
   const std::string line = fmt::format(
-      "{:>9} of {}  {:>5}  dt {:>8}  {:>6} steps/s  {} particles  {} left", simulated_time_text(run.time()),
+      "{:>9} / {}  {:>5}  dt {}  {} steps/s  {} particles  {} left", simulated_time_text(run.time()),
       simulated_time_text(run.end_time()), percent_text(share_of(run)), simulated_time_text(run.last_outer_dt()),
       significant(steps_per_second_, 3), count_text(run.n_particles()), duration_text(left));
   if (Console::has_status_line()) Console::status(line);

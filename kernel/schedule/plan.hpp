@@ -100,7 +100,7 @@ struct LoopTiming {
 struct Timings {
   std::vector<OperatorTiming> operators;
   std::vector<LoopTiming> loops;
-  double steps = 0.0;  ///< all of step(), s; the lines below are parts of it
+  double steps = 0.0;  ///< all of step(), s
   double operators_total = 0.0;
   double neighbour_search = 0.0;               ///< sort, halos and lists together
   double sort = 0.0, halo = 0.0, lists = 0.0;  ///< parts of neighbour_search
@@ -108,7 +108,9 @@ struct Timings {
   double clear = 0.0;
   double health = 0.0;
   std::uint64_t renewals = 0, sorts = 0, list_builds = 0;
-  double overhead() const { return steps - operators_total - neighbour_search; }
+  double outside_steps = 0.0;                  ///< operators and neighbour search before the first step or for samples
+  /// What steps cost beyond operators and neighbour search.
+  double overhead() const { return steps + outside_steps - operators_total - neighbour_search; }
 };
 
 }  // namespace shoal::kernel

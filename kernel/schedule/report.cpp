@@ -117,11 +117,12 @@ Plan Simulation::Implementation::plan() const {
 
 Timings Simulation::Implementation::timings() const {
   Timings timings;
-  std::uint64_t operator_ticks = 0;
+  std::uint64_t operator_ticks = 0, outside_ticks = renewal_ticks_before_steps;
   for (const auto& op : schedule.operators) {
     timings.operators.push_back({op->attachment.name, op->body->name(), op->loop, op->stage, op->calls,
                                  op->particles, op->pairs, seconds(op->ticks)});
     operator_ticks += op->ticks;
+    if (op->loop == SHOAL_INITIAL || op->loop == SHOAL_SAMPLE) outside_ticks += op->ticks;
   }
   for (const auto& loop : schedule.loops)
     timings.loops.push_back({loop->name, loop->steps, loop->steps > 0 ? loop->smallest_dt : 0.0,
@@ -130,6 +131,7 @@ Timings Simulation::Implementation::timings() const {
   timings.steps = seconds(stepper.step_ticks);
   timings.operators_total = seconds(operator_ticks);
   timings.neighbour_search = seconds(stepper.renewal_ticks);
+  timings.outside_steps = seconds(outside_ticks);
   timings.sort = seconds(neighbourhood.sort_ticks);
   timings.halo = seconds(neighbourhood.halo_ticks);
   timings.lists = seconds(neighbourhood.list_ticks);

@@ -177,6 +177,7 @@ void Simulation::Implementation::initialise() {
     stepper.run_outside(schedule.initial);
     stepper.check_health();
   });
+  renewal_ticks_before_steps = stepper.renewal_ticks;
   phase = Phase::running;
 }
 

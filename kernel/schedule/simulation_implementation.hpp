@@ -60,6 +60,7 @@ class Simulation::Implementation {
   std::optional<tbb::global_control> more_threads;
   tbb::task_arena arena;
   Phase phase = Phase::bodies;
+  std::uint64_t renewal_ticks_before_steps = 0;
 
  private:
   void make_domain();

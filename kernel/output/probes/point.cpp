@@ -14,6 +14,7 @@
 #include <optional>
 #include <utility>
 
+#include "kernel/case/scalars.hpp"
 #include "kernel/output/particle_expression.hpp"
 #include "kernel/output/probes/own_probes.hpp"
 #include "kernel/plugins/host.hpp"
@@ -174,7 +175,7 @@ class Point final : public Probe {
 
   void warn_once(double time) {
     if (!std::exchange(warned_, true))
-      log(LogLevel::warning, "probe '" + name_ + "': too few particles near its point at " + std::to_string(time) +
+      log(LogLevel::warning, "probe '" + name_ + "': too few particles near its point at " + format_number(time) +
                                  " s; its value is NaN while that is so");
   }
 
