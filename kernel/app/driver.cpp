@@ -155,7 +155,14 @@ void Driver::step() {
 void Driver::checkpoint_if_due() {
   const bool by_time = checkpoint_due_.between(last_time_, session_.run().time());
   const bool by_clock = checkpoint_every_ > 0.0 && seconds_since(last_checkpoint_) >= checkpoint_every_;
-  if (by_time || by_clock) write_checkpoint();
+  if (!by_time && !by_clock) return;
+  try {
+    write_checkpoint();
+  } catch (const OutputError& error) {
+    // A full disk may have room again before the next one; the run itself is well.
+    last_checkpoint_ = Clock::now();
+    Console::warning(std::string("no checkpoint was written: ") + error.what());
+  }
 }
 
 void Driver::write_checkpoint() {
@@ -182,10 +189,25 @@ int Driver::drive() {
   } catch (const PhysicsFailure& failure) {
     progress.end();
     return fail(failure);
+  } catch (const std::exception& error) {
+    progress.end();
+    record_failure(error.what());
+    throw;
   }
   progress.end();
   write_checkpoint();
   return finish(run.finished() ? "finished" : interrupted() ? "interrupted" : "stopped");
+}
+
+// The summary of a run that ends by an exception; that it cannot be written must not hide why.
+void Driver::record_failure(const std::string& why) const {
+  try {
+    Summary result = summary("failed");
+    result.failure = why;
+    folder_.write_summary(to_json(result));
+  } catch (const std::exception& error) {
+    Console::warning(error.what());
+  }
 }
 
 int Driver::finish(const std::string& status) {
@@ -200,9 +222,7 @@ int Driver::finish(const std::string& status) {
 
 int Driver::fail(const PhysicsFailure& failure) {
   const Simulation& run = session_.run();
-  Summary result = summary("failed");
-  result.failure = failure.report().cause;
-  folder_.write_summary(to_json(result));
+  record_failure(failure.report().cause);
   std::string text = failure_text(failure.report());
   try {
     session_.recorder().dump(run, folder_.failure());
@@ -213,7 +233,7 @@ int Driver::fail(const PhysicsFailure& failure) {
   if (!checkpoints_.newest_first().empty())
     text += "  go on from the last checkpoint with: shoal resume " + folder_.path().string() + "\n";
   Console::error(text);
-  Console::event({{"event", "end"}, {"status", "failed"}, {"cause", result.failure}, {"time", run.time()}});
+  Console::event({{"event", "end"}, {"status", "failed"}, {"cause", failure.report().cause}, {"time", run.time()}});
   return exit_physics_failed;
 }
 

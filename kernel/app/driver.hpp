@@ -42,6 +42,7 @@ class Driver {
   void write_checkpoint();
   int finish(const std::string& status);
   int fail(const PhysicsFailure& failure);
+  void record_failure(const std::string& why) const;
   Summary summary(const std::string& status) const;
   void tell_end(const Summary& summary) const;
   double wall_seconds() const;

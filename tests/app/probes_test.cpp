@@ -162,3 +162,28 @@ TEST_CASE("a table has the first step at or after each due time") {
   CHECK(std::filesystem::exists("due/grains.tables/2.txt"));
   CHECK_FALSE(std::filesystem::exists("due/grains.tables/3.txt"));
 }
+
+TEST_CASE("probes of plugins: named columns, fields on demand, failures") {
+  const Result result = run_once("plugin_probe", grains(R"(probes:
+  centre: {grains.centre: {body: pile}, every: 1 ms}
+  energy: {grains.centre: {body: pile, field: kinetic_energy}, every: 1 ms}
+)"));
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  CHECK(contains(read("plugin_probe/probes/centre.csv"), "time [s],x [m],y [m],weight [kg]\n"));
+  CHECK(first("plugin_probe", "centre")[0] == doctest::Approx(1.0).epsilon(1e-12));
+  CHECK(first("plugin_probe", "centre")[1] == doctest::Approx(1.0).epsilon(1e-12));
+  CHECK(first("plugin_probe", "centre")[2] == doctest::Approx(2000.0).epsilon(1e-12));
+  CHECK(first("plugin_probe", "energy")[2] > 0.0);
+  const Result part = run_once("plugin_probe", grains("probes:\n  p: {grains.centre: {body: pile, field: velocity.y}, "
+                                                      "every: 1 ms}\n"));
+  CHECK(part.code == 0);
+  const Result unknown = run_once("plugin_probe", grains("probes:\n  p: {grains.centre: {body: pile, field: charge}, "
+                                                         "every: 1 ms}\n"));
+  CHECK(unknown.code == 2);
+  CHECK(contains(unknown.err, "has no field 'charge'"));
+  const Result fails = run_once("plugin_probe", grains("probes:\n  p: {grains.centre: {body: pile, field: acceleration.x}"
+                                                       ", every: 1 ms}\n"));
+  CHECK(fails.code == 3);
+  CHECK(contains(fails.err, "grains.centre: nothing has a weight"));
+}

@@ -15,6 +15,7 @@
 #include "shoal/particle_operator.hpp"
 #include "shoal/physics.hpp"
 #include "shoal/plugin.hpp"
+#include "shoal/probe.hpp"
 #include "shoal/shared_fields.hpp"
 #include "shoal/smoothing_kernel.hpp"
 #include "shoal/vec.hpp"

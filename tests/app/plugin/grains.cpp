@@ -148,11 +148,35 @@ class Tables final : public Output {
   std::filesystem::path folder_;
 };
 
+// Centre of mass of a body.
+class Centre final : public Probe {
+ public:
+  Param<BodyName> body{"body", nullptr, "Body whose centre is wanted.", example("pile")};
+  Param<std::string> field{"field", nullptr, "What particles are weighted with.", default_to("mass")};
+  std::vector<Column> columns() const override { return {{"x", "m"}, {"y", "m"}, {"weight", "kg"}}; }
+  std::vector<Need> needs() const override { return {{body->name, field.value()}}; }
+  void sample(const shoal_snapshot& snapshot, double* values) override {
+    const shoal_snapshot_body& found = *find_body(snapshot, body->name);
+    const auto* weight = static_cast<const double*>(find_field(found, field.value())->data);
+    double x = 0, y = 0, sum = 0;
+    for (std::uint64_t i = 0; i < found.n_particles; ++i) {
+      x += weight[i] * found.position[2 * i];
+      y += weight[i] * found.position[2 * i + 1];
+      sum += weight[i];
+    }
+    if (!(sum > 0)) throw PhysicsFailed("nothing has a weight");
+    values[0] = x / sum;
+    values[1] = y / sum;
+    values[2] = sum;
+  }
+};
+
 }  // namespace grains
 
 SHOAL_PLUGIN(grains, "1.0.0") {
   summary("Soft grains, to test the program with.");
   add<grains::Matter>("grains.matter", "What grains are made of.");
   add<grains::Falling>("grains.falling", "Grains that fall on a floor.");
+  add<grains::Centre>("grains.centre", "Centre of mass.");
   add<grains::Tables>("grains.tables", "The particles as text.");
 }
