@@ -20,7 +20,7 @@ Json table_schema(const shoal_type& type);
 
 // A number may be written as one, or as a text with a unit or an expression.
 Json number(const shoal_parameter& p) {
-  Json value = {{"type", "number"}};
+  Json value = {{"type", p.kind == SHOAL_INTEGER ? "integer" : "number"}};
   if ((p.flags & SHOAL_PARAMETER_HAS_MINIMUM) != 0)
     value[(p.flags & SHOAL_PARAMETER_MINIMUM_EXCLUDED) != 0 ? "exclusiveMinimum" : "minimum"] = p.minimum;
   if ((p.flags & SHOAL_PARAMETER_HAS_MAXIMUM) != 0)

@@ -419,6 +419,25 @@ void CaseFile::finish(const std::vector<std::string>& settings, Diagnostics& dia
   for (const Node& plugin : plugins.is_sequence() ? plugins.items() : std::vector<Node>{plugins}) {
     if (plugin.is_scalar()) plugins_.push_back({plugin.text(), plugin.place()});
   }
+  read_plugin_paths();
+}
+
+// Made absolute in the tree itself: the effective case, which stands elsewhere, must name the same folders.
+void CaseFile::read_plugin_paths() {
+  std::vector<Node::Entry> entries = root_.entries();
+  for (Node::Entry& entry : entries) {
+    if (entry.key != "plugin_paths") continue;
+    const Node& value = entry.value;
+    std::vector<Node> items = value.is_sequence() ? value.items() : std::vector<Node>{value};
+    for (Node& item : items) {
+      if (!item.is_scalar()) return;  // reported with everything else
+      const std::filesystem::path path = std::filesystem::path(folder_) / item.text();
+      plugin_paths_.push_back(std::filesystem::absolute(path).lexically_normal().string());
+      item = Node::scalar(plugin_paths_.back(), true, item.place());
+    }
+    entry.value = Node::sequence(std::move(items), value.place());
+  }
+  root_ = Node::map(std::move(entries), root_.place());
 }
 
 std::unique_ptr<CaseModel> check_case(const CaseFile& file, const TypeCatalogue& types,

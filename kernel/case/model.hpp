@@ -42,16 +42,20 @@ class CaseFile {
   /// False if the text is not YAML; there is nothing more to check then.
   bool readable() const { return root_.is_map(); }
   const std::vector<PluginRequest>& plugins() const { return plugins_; }
+  /// Folders of plugins, absolute.
+  const std::vector<std::string>& plugin_paths() const { return plugin_paths_; }
   const Node& root() const { return root_; }
   const std::string& name() const { return name_; }
   const std::string& folder() const { return folder_; }
 
  private:
   void finish(const std::vector<std::string>& settings, Diagnostics& diagnostics);
+  void read_plugin_paths();
   std::string name_;
   std::string folder_;
   Node root_;
   std::vector<PluginRequest> plugins_;
+  std::vector<std::string> plugin_paths_;
 };
 
 struct InitialValue {

@@ -175,12 +175,10 @@ const shoal_object* read_named_object(const std::string& name, const Place& name
   std::vector<std::string> notes;
   if (!names.empty()) notes.push_back(type_kind_plural(kind) + ": " + join(names));
   std::string message = "unknown " + type_kind_name(kind) + " '" + name + "'";
-  if (!explanation.empty()) {
-    message += "; " + explanation;
-  } else {
-    message += suggestion;
-    if (names.empty()) notes.push_back("no plugin that this case lists has " + type_kind_plural(kind));
-  }
+  if (!explanation.empty()) message += "; " + explanation;
+  message += suggestion;
+  if (names.empty() && explanation.empty())
+    notes.push_back("no plugin that this case lists has " + type_kind_plural(kind));
   context.diagnostics.error(name_place, message, notes);
   return nullptr;
 }

@@ -348,6 +348,7 @@ TEST_CASE("the JSON schema has every section, type and key") {
   CHECK(liquid["required"] == nlohmann::json::array({"density"}));
   CHECK(liquid["additionalProperties"] == false);
   CHECK(liquid["properties"]["density"]["anyOf"][0]["exclusiveMinimum"] == 0.0);
+  CHECK(liquid["properties"]["iterations"]["anyOf"][0]["type"] == "integer");
   CHECK(liquid["properties"]["density"]["description"] == "Density at rest. [kg/m3]");
   CHECK(liquid["properties"]["equation_of_state"]["enum"] ==
         nlohmann::json::array({"tait", "linear", "stiffened"}));
