@@ -38,20 +38,23 @@ BodyParticles fill(const BodyModel& body, int dimensions) {
   LatticeOptions options;
   options.kind = body.arrangement == "hexagonal" ? Lattice::hexagonal : Lattice::cubic;
   const Box bounds = result.shape->bounds();
-  for (std::size_t k = 0; k < 3; ++k) options.origin[k] = std::isfinite(bounds.lower[k]) ? bounds.lower[k] : 0.0;
+  for (std::size_t k = 0; k < 3; ++k)
+    options.origin[k] = std::isfinite(bounds.lower[k]) ? bounds.lower[k] : 0.0;
   try {
     result.points = fill_lattice(*result.shape, body.resolution, dimensions, options);
   } catch (const std::logic_error& error) {  // invalid_argument, length_error
     throw ModelError("body '" + body.name + "': " + error.what(), body.place);
   }
   if (result.points.empty())
-    throw ModelError("body '" + body.name + "' holds no particle: its shape is empty, or thinner than its resolution",
-                     body.place);
+    throw ModelError(
+        "body '" + body.name + "' holds no particle: its shape is empty, or thinner than its resolution",
+        body.place);
   return result;
 }
 
 // Also through periodic faces: shapes themselves do not repeat.
-bool near_shape(const Shape& shape, const Point& point, double distance, const PeriodicBox& box, int dimensions) {
+bool near_shape(const Shape& shape, const Point& point, double distance, const PeriodicBox& box,
+                int dimensions) {
   if (shape.signed_distance(point) < distance) return true;
   for (std::size_t k = 0; k < static_cast<std::size_t>(dimensions); ++k) {
     if (!box.periodic[k]) continue;
@@ -64,7 +67,8 @@ bool near_shape(const Shape& shape, const Point& point, double distance, const P
   return false;
 }
 
-void leave_out_overlap(BodyParticles& later, const BodyParticles& earlier, const PeriodicBox& box, int dimensions) {
+void leave_out_overlap(BodyParticles& later, const BodyParticles& earlier, const PeriodicBox& box,
+                       int dimensions) {
   // Lattices of bodies that touch are a spacing apart; rounding must not make that an overlap.
   const double distance = 0.5 * std::min(later.model->resolution, earlier.model->resolution) * (1.0 - 1e-6);
   std::vector<std::size_t> suspects;
@@ -89,15 +93,16 @@ void leave_out_overlap(BodyParticles& later, const BodyParticles& earlier, const
   const std::string what = "'" + later.model->name + "' overlaps '" + earlier.model->name + "'";
   if (n == later.points.size())
     throw ModelError("body " + what + " everywhere: no particle of it is left", later.model->place);
-  log(LogLevel::warning, later.model->place + ": body " + what + ", which comes first: " + std::to_string(n) + " of its " +
-                             std::to_string(later.points.size()) + " particles are left out");
+  log(LogLevel::warning, later.model->place + ": body " + what + ", which comes first: " + std::to_string(n) +
+                             " of its " + std::to_string(later.points.size()) + " particles are left out");
   std::vector<Point> kept;
   for (std::size_t i = 0; i < later.points.size(); ++i)
     if (!left_out[i]) kept.push_back(later.points[i]);
   later.points = std::move(kept);
 }
 
-void relax_body(std::size_t index, std::vector<BodyParticles>& bodies, const PeriodicBox& box, int dimensions) {
+void relax_body(std::size_t index, std::vector<BodyParticles>& bodies, const PeriodicBox& box,
+                int dimensions) {
   BodyParticles& body = bodies[index];
   RelaxParameters parameters;
   parameters.dimension = dimensions;
@@ -109,7 +114,8 @@ void relax_body(std::size_t index, std::vector<BodyParticles>& bodies, const Per
     if (other == index || !same) continue;
     const double reach = 3.0 * body.model->resolution;
     for (const Point& point : bodies[other].points)
-      if (near_shape(*body.shape, point, reach, box, dimensions)) parameters.fixed.push_back(box.wrapped(point));
+      if (near_shape(*body.shape, point, reach, box, dimensions))
+        parameters.fixed.push_back(box.wrapped(point));
   }
   for (Point& point : body.points) point = box.wrapped(point);
   try {
@@ -130,7 +136,8 @@ std::vector<std::vector<Point>> arrange_particles(const CaseModel& model, bool s
     bodies.push_back(std::move(particles));
   }
   for (std::size_t k = 0; k < bodies.size(); ++k)
-    if (bodies[k].model->arrangement == "relaxed" && !skip_relaxation) relax_body(k, bodies, box, model.dimensions);
+    if (bodies[k].model->arrangement == "relaxed" && !skip_relaxation)
+      relax_body(k, bodies, box, model.dimensions);
   std::vector<std::vector<Point>> points;
   for (BodyParticles& body : bodies) points.push_back(std::move(body.points));
   return points;

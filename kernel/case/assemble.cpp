@@ -26,7 +26,8 @@ class Materials {
       if (made.api.destroy != nullptr) made.api.destroy(made.self);
   }
 
-  void find(const shoal_object* material, const char* name, std::uint32_t revision, const void** api, void** self) {
+  void find(const shoal_object* material, const char* name, std::uint32_t revision, const void** api,
+            void** self) {
     *api = nullptr;
     *self = nullptr;
     if (material == nullptr) return;
@@ -89,8 +90,9 @@ shoal_rank rank_of(const InitialValue& value, int dimensions) {
   if (n == dimensions * dimensions) return SHOAL_RANK_MATRIX;
   throw ModelError("'" + value.field + "' is given " + std::to_string(n) + " components; in " +
                        std::to_string(dimensions) + " dimensions a field has 1 (a number), " +
-                       std::to_string(dimensions) + " (a vector), " + std::to_string(dimensions * (dimensions + 1) / 2) +
-                       " (a symmetric matrix) or " + std::to_string(dimensions * dimensions) + " (a matrix)",
+                       std::to_string(dimensions) + " (a vector), " +
+                       std::to_string(dimensions * (dimensions + 1) / 2) + " (a symmetric matrix) or " +
+                       std::to_string(dimensions * dimensions) + " (a matrix)",
                    value.place);
 }
 
@@ -123,7 +125,8 @@ void add_fields_of_shape(const BodyModel& body, int dimensions, std::vector<Init
                     [=](std::uint64_t n, const double* positions, double* out) {
                       for_each_point(n, positions, [&](std::uint64_t i, const Point& point) {
                         const Point normal = shape->face(point).normal;
-                        std::copy_n(normal.begin(), dimensions, out + i * static_cast<std::uint64_t>(dimensions));
+                        std::copy_n(normal.begin(), dimensions,
+                                    out + i * static_cast<std::uint64_t>(dimensions));
                       });
                     },
                     body.place, true});
@@ -162,13 +165,15 @@ std::string plugin_of(const shoal_object& object) {
 }
 
 // In the order of the case, but for physics of plugins that others require.
-std::vector<const shoal_object*> in_order(std::vector<const shoal_object*> waiting, const AssemblyOptions& options) {
+std::vector<const shoal_object*> in_order(std::vector<const shoal_object*> waiting,
+                                          const AssemblyOptions& options) {
   if (!options.requires_plugin) return waiting;
   std::vector<const shoal_object*> ordered;
   while (!waiting.empty()) {
     auto next = std::find_if(waiting.begin(), waiting.end(), [&](const shoal_object* one) {
       return std::none_of(waiting.begin(), waiting.end(), [&](const shoal_object* other) {
-        return plugin_of(*other) != plugin_of(*one) && options.requires_plugin(plugin_of(*one), plugin_of(*other));
+        return plugin_of(*other) != plugin_of(*one) &&
+               options.requires_plugin(plugin_of(*one), plugin_of(*other));
       });
     });
     if (next == waiting.end()) next = waiting.begin();
@@ -200,8 +205,8 @@ Assembly assemble(const CaseModel& model, const AssemblyOptions& options) {
   for (std::size_t k = 0; k < model.bodies.size(); ++k)
     assembly.run->add_body(specification_of(model.bodies[k], points[k], model.dimensions));
   assembly.run->set_material_interface_lookup(
-      [materials = assembly.materials.get()](const shoal_object* material, const char* name, std::uint32_t revision,
-                                             const void** api, void** self) {
+      [materials = assembly.materials.get()](const shoal_object* material, const char* name,
+                                             std::uint32_t revision, const void** api, void** self) {
         materials->find(material, name, revision, api, self);
       });
   for (const shoal_object* physics : in_order(model.physics, options)) build(*physics, *assembly.run);

@@ -30,7 +30,7 @@ struct Assembly {
 };
 
 struct AssemblyOptions {
-  int threads = 0;          ///< 0: as many as the machine has
+  int threads = 0;  ///< 0: as many as the machine has
   /// Bodies of relaxed particles stay on their lattices: enough for a plan, and quick.
   bool skip_relaxation = false;
   /// Whether plugin `a` requires plugin `b`: then the physics of `b` are built first.

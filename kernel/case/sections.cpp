@@ -211,7 +211,8 @@ const std::vector<shoal_parameter>& case_rows() {
       row(SHOAL_TEXT, "plugins", nullptr, list, "[]", "Plugins that the case needs; no other is loaded.",
           "[fluid, vtk]"),
       row(SHOAL_TEXT, "plugin_paths", nullptr, list, "[]",
-          "Folders to look for plugins in, relative to the case. Their code runs with your rights, so they count only "
+          "Folders to look for plugins in, relative to the case. Their code runs with your rights, so they "
+          "count only "
           "with --allow-plugin-paths.",
           "[../build/plugins]"),
       with_bounds(row(SHOAL_INTEGER, "dimensions", nullptr, required, nullptr, "2 or 3.", "2"), 2, 3),

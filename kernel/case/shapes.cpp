@@ -36,8 +36,9 @@ struct BoxParameters : Parameterised {
   ShapePtr make(int dimensions) const {
     for (std::size_t k = 0; k < static_cast<std::size_t>(dimensions); ++k) {
       if (!(lower.value()[k] < upper.value()[k]))
-        throw std::invalid_argument("the box is empty: its lower corner is not below its upper corner along " +
-                                    std::string(1, "xyz"[k]));
+        throw std::invalid_argument(
+            "the box is empty: its lower corner is not below its upper corner along " +
+            std::string(1, "xyz"[k]));
     }
     return std::make_shared<BoxShape>(BoxShape::Parameters{lower, upper, dimensions});
   }
@@ -58,15 +59,17 @@ struct CylinderParameters : Parameterised {
 
 struct HalfSpaceParameters : Parameterised {
   Param<Vector3> point{"point", "m", "A point of the plane.", example("[0, 0]")};
-  Param<Vector3> normal{"normal", "1", "Normal of the plane, out of the shape; of any length.", example("[0, 1]")};
+  Param<Vector3> normal{"normal", "1", "Normal of the plane, out of the shape; of any length.",
+                        example("[0, 1]")};
   ShapePtr make(int) const { return std::make_shared<HalfSpace>(HalfSpace::Parameters{point, normal}); }
 };
 
 struct PolygonParameters : Parameterised {
-  Param<std::vector<Vector3>> vertices{"vertices", "m",
-                                       "Corners in order, either way round. In three dimensions their z is not looked "
-                                       "at: the shape is a prism along z.",
-                                       example("[[0, 0], [1, 0], [1, 1]]")};
+  Param<std::vector<Vector3>> vertices{
+      "vertices", "m",
+      "Corners in order, either way round. In three dimensions their z is not looked "
+      "at: the shape is a prism along z.",
+      example("[[0, 0], [1, 0], [1, 1]]")};
   ShapePtr make(int) const {
     Polygon::Parameters polygon;
     for (const Vector3& vertex : vertices.value()) polygon.vertices.push_back({vertex[0], vertex[1], 0.0});
@@ -78,8 +81,12 @@ struct ShellParameters : Parameterised {
   Param<ObjectHandle> of{"of", nullptr, "Shape along whose surface the shell lies.", shapes_only,
                          example("{box: {lower: [0, 0], upper: [2, 1]}}")};
   Param<double> thickness{"thickness", "m", "Thickness.", positive, example("4*dx")};
-  Param<Choice> placement{"placement", nullptr, "On which side of the surface.",
-                          one_of("outside", "inside", "centred"), default_to("outside"), example("inside")};
+  Param<Choice> placement{"placement",
+                          nullptr,
+                          "On which side of the surface.",
+                          one_of("outside", "inside", "centred"),
+                          default_to("outside"),
+                          example("inside")};
   ShapePtr make(int dimensions) const {
     const auto side = placement.value() == "inside"    ? Shell::Placement::inside
                       : placement.value() == "centred" ? Shell::Placement::centred
@@ -113,7 +120,8 @@ struct DifferenceParameters : Parameterised {
                                           example("[{ball: {centre: [1, 0.5], radius: 0.2}}]")};
   ShapePtr make(int dimensions) const {
     std::vector<ShapePtr> removed = make_all(remove, dimensions);
-    const ShapePtr all = removed.size() == 1 ? removed[0] : std::make_shared<Union>(Union::Parameters{removed});
+    const ShapePtr all =
+        removed.size() == 1 ? removed[0] : std::make_shared<Union>(Union::Parameters{removed});
     return std::make_shared<Difference>(Difference::Parameters{make_shape(*from->object, dimensions), all});
   }
 };
@@ -126,8 +134,8 @@ struct TransformParameters : Parameterised {
                       example("30 deg")};
   Param<std::vector<double>> axis{"axis", "1", "Axis about which it is turned in three dimensions.",
                                   default_to("[0, 0, 1]"), example("[0, 1, 0]")};
-  Param<Vector3> centre{"centre", "m", "Point about which it is scaled and turned; the origin without it.", optional,
-                        example("[1, 0.5]")};
+  Param<Vector3> centre{"centre", "m", "Point about which it is scaled and turned; the origin without it.",
+                        optional, example("[1, 0.5]")};
   Param<Vector3> move{"move", "m", "Distance by which it is moved.", optional, example("[0.1, 0]")};
   ShapePtr make(int dimensions) const {
     if (axis.value().size() != 3) throw std::invalid_argument("the axis of rotation has three components");
@@ -165,8 +173,8 @@ void destroy_c(void* self) { delete static_cast<Made*>(self); }
 shoal_status distance_c(void* self, uint64_t n, const double* points, double* distances) {
   return guarded([&] {
     for (uint64_t k = 0; k < n; ++k)
-      distances[k] =
-          static_cast<Made*>(self)->shape->signed_distance({points[3 * k], points[3 * k + 1], points[3 * k + 2]});
+      distances[k] = static_cast<Made*>(self)->shape->signed_distance(
+          {points[3 * k], points[3 * k + 1], points[3 * k + 2]});
   });
 }
 void bounds_c(void* self, double lower[3], double upper[3]) {
@@ -198,7 +206,8 @@ const OwnShapes& own_shapes() {
     all.add<BoxParameters>("box", "A box along the axes; a rectangle in two dimensions.");
     all.add<BallParameters>("ball", "A ball; a disc in two dimensions.");
     all.add<CylinderParameters>("cylinder", "A round cylinder with flat ends, in three dimensions.");
-    all.add<PolygonParameters>("polygon", "A polygon in the plane of x and y; a prism along z in three dimensions.");
+    all.add<PolygonParameters>("polygon",
+                               "A polygon in the plane of x and y; a prism along z in three dimensions.");
     all.add<HalfSpaceParameters>("half_space", "All points behind a plane, to cut other shapes with.");
     all.add<ShellParameters>("shell", "A layer along the surface of a shape, e.g. the wall around a box.");
     all.add<UnionParameters>("union", "What at least one of the shapes holds.");
