@@ -15,9 +15,10 @@
 namespace shoal::kernel::app {
 namespace {
 
-SearchSettings search_settings(const Options& options) {
+SearchSettings search_settings(const Options& options, const std::vector<std::string>& of_case) {
   SearchSettings settings = SearchSettings::of_this_process();
   settings.command_line = options.plugin_paths;
+  settings.of_case.assign(of_case.begin(), of_case.end());
   settings.allow_plugin_paths = options.allow_plugin_paths;
   return settings;
 }
@@ -55,15 +56,23 @@ bool requires_plugin(const Loader& loader, std::string_view a, std::string_view 
 
 }  // namespace
 
-Workshop::Workshop(const Options& options) : loader(search_settings(options)), registry(check_parameter) {
+Workshop::Workshop(const Options& options, const std::vector<std::string>& of_case)
+    : loader(search_settings(options, of_case)), registry(check_parameter) {
   set_evaluate(evaluate);
   registry.add_own(own_shape_types());
   registry.add_own(own_probe_types());
   for (const std::string& line : loader.search_path().description()) log(LogLevel::debug, "plugins: " + line);
 }
 
-Session::Session(const Options& options, const std::string& case_file, bool quick) : workshop_(options) {
-  read(options, case_file);
+Session::Session(const Options& options, const std::string& case_file, bool quick) {
+  Diagnostics diagnostics;
+  file_ = std::make_unique<CaseFile>(case_file, options.settings, diagnostics);
+  if (!file_->readable()) {
+    diagnostics.throw_if_errors();
+    throw UserError(Place{}, "'" + case_file + "' cannot be read");
+  }
+  workshop_ = std::make_unique<Workshop>(options, file_->plugin_paths());
+  read(diagnostics);
   try {
     build(options, quick);
   } catch (const ModelError& error) {
@@ -71,14 +80,8 @@ Session::Session(const Options& options, const std::string& case_file, bool quic
   }
 }
 
-void Session::read(const Options& options, const std::string& case_file) {
-  Diagnostics diagnostics;
-  file_ = std::make_unique<CaseFile>(case_file, options.settings, diagnostics);
-  if (!file_->readable()) {
-    diagnostics.throw_if_errors();
-    throw UserError(Place{}, "'" + case_file + "' cannot be read");
-  }
-  const RegistryCatalogue types = load_plugins(*file_, workshop_.loader, workshop_.registry, diagnostics);
+void Session::read(Diagnostics& diagnostics) {
+  const RegistryCatalogue types = load_plugins(*file_, workshop_->loader, workshop_->registry, diagnostics);
   model_ = check_case(*file_, types, diagnostics);
   diagnostics.throw_if_errors();
   if (!diagnostics.empty() && !Console::quiet()) Console::warning(diagnostics.format());
@@ -89,7 +92,7 @@ void Session::build(const Options& options, bool quick) {
   assembly_options.threads = options.threads;
   assembly_options.skip_relaxation = quick;
   assembly_options.requires_plugin = [this](std::string_view a, std::string_view b) {
-    return requires_plugin(workshop_.loader, a, b);
+    return requires_plugin(workshop_->loader, a, b);
   };
   assembly_ = std::make_unique<Assembly>(assemble(*model_, assembly_options));
   recorder_ = std::make_unique<Recorder>(*model_, run());

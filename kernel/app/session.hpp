@@ -21,7 +21,8 @@ namespace shoal::kernel::app {
 /// The plugins that can be found, and the types that are known so far: the kernel's own at first.
 class Workshop {
  public:
-  explicit Workshop(const Options& options);
+  /// `of_case` are the folders that a case names.
+  explicit Workshop(const Options& options, const std::vector<std::string>& of_case = {});
   Loader loader;
   Registry registry;
 };
@@ -32,19 +33,19 @@ class Session {
   /// what takes long and changes nothing that is shown.
   Session(const Options& options, const std::string& case_file, bool quick);
 
-  Workshop& workshop() { return workshop_; }
+  Workshop& workshop() { return *workshop_; }
   const CaseFile& file() const { return *file_; }
   const CaseModel& model() const { return *model_; }
   Simulation& run() { return *assembly_->run; }
   Recorder& recorder() { return *recorder_; }
 
  private:
-  void read(const Options& options, const std::string& case_file);
+  void read(Diagnostics& diagnostics);
   void build(const Options& options, bool quick);
 
   // In this order, since each refers to those before it.
-  Workshop workshop_;
   std::unique_ptr<CaseFile> file_;
+  std::unique_ptr<Workshop> workshop_;
   std::unique_ptr<CaseModel> model_;
   std::unique_ptr<Assembly> assembly_;
   std::unique_ptr<Recorder> recorder_;

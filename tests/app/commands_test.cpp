@@ -207,6 +207,26 @@ TEST_CASE("only the plugins of the case are mapped") {
   CHECK(plugins == std::set<std::string>{"grains.so"});
 }
 
+TEST_CASE("a case may name folders of plugins only with leave") {
+  std::filesystem::create_directories("bring");
+  std::filesystem::copy_file(SHOAL_TEST_PLUGINS "/idle.so", "bring/brought.so",
+                             std::filesystem::copy_options::overwrite_existing);
+  std::string text = grains("plugin_paths: bring\n");
+  write("paths.yaml", text);
+  CHECK(shoal({"check", "paths.yaml"}).code == 0);
+  text.replace(text.find("[grains]"), 8, "[grains, brought]");
+  write("paths.yaml", text);
+  const Result refused = shoal({"check", "paths.yaml"});
+  CHECK(refused.code == 2);
+  CHECK(contains(refused.err, "only with --allow-plugin-paths"));
+  CHECK(contains(refused.err, "there is no plugin 'brought'"));
+  // Found then, but it is another plugin than its name says.
+  const Result allowed = shoal({"check", "paths.yaml", "--allow-plugin-paths"});
+  CHECK(allowed.code == 2);
+  CHECK_FALSE(contains(allowed.err, "there is no plugin 'brought'"));
+  CHECK(contains(allowed.err, "idle"));
+}
+
 TEST_CASE("overlapping bodies: the first one keeps its particles") {
   std::string text = grains("");
   text.replace(text.find("physics:"), 0,
