@@ -58,7 +58,7 @@ class ConsoleSink final : public spdlog::sinks::base_sink<std::mutex> {
 };
 
 spdlog::level::level_enum level_of(const std::string& name) {
-  return name == "debug" ? spdlog::level::debug
+  return name == "debug"   ? spdlog::level::debug
          : name == "info"  ? spdlog::level::info
          : name == "error" ? spdlog::level::err
                            : spdlog::level::warn;
@@ -66,7 +66,8 @@ spdlog::level::level_enum level_of(const std::string& name) {
 
 void take_message(LogLevel level, std::string_view text) {
   if (state().settings.json && level >= LogLevel::warning) {
-    Console::event({{"event", level == LogLevel::warning ? "warning" : "error"}, {"message", std::string(text)}});
+    Console::event(
+        {{"event", level == LogLevel::warning ? "warning" : "error"}, {"message", std::string(text)}});
     return;
   }
   const auto spdlog_level = level == LogLevel::debug     ? spdlog::level::debug
@@ -88,7 +89,8 @@ void Console::open(const ConsoleSettings& settings) {
   state().status_line = !settings.json && !settings.quiet && ::isatty(STDERR_FILENO) != 0;
   auto logger = std::make_shared<spdlog::logger>("shoal", std::make_shared<ConsoleSink>());
   logger->set_pattern("%l: %v");
-  logger->set_level(settings.quiet ? std::max(spdlog::level::err, level_of(settings.level)) : level_of(settings.level));
+  logger->set_level(settings.quiet ? std::max(spdlog::level::err, level_of(settings.level))
+                                   : level_of(settings.level));
   spdlog::set_default_logger(std::move(logger));
   set_log_sink(take_message);
 }
@@ -117,7 +119,8 @@ void Console::status(const std::string& line) {
   clear_status();
   // A line that wraps could not be cleared.
   std::size_t end = line.size();
-  while (end > 0 && static_cast<std::size_t>(display_width(std::string_view(line).substr(0, end))) >= terminal_width())
+  while (end > 0 &&
+         static_cast<std::size_t>(display_width(std::string_view(line).substr(0, end))) >= terminal_width())
     --end;
   state().status = line.substr(0, end);
   draw_status();
@@ -126,8 +129,10 @@ void Console::status(const std::string& line) {
 void Console::warning(std::string_view text) { take_message(LogLevel::warning, text); }
 
 void Console::error(std::string_view text) {
-  if (json()) event({{"event", "error"}, {"message", std::string(text)}});
-  else write_line(stderr, text);
+  if (json())
+    event({{"event", "error"}, {"message", std::string(text)}});
+  else
+    write_line(stderr, text);
 }
 
 }  // namespace shoal::kernel::app

@@ -29,17 +29,19 @@ std::string first_sentence(const char* doc) {
 
 std::string owner_of(const RegisteredType& type) {
   const std::string kind = type_kind_name(type.kind);
-  return type.plugin.empty() ? kind + " of Shoal itself" : kind + " of plugin " + type.plugin + " " + type.plugin_version;
+  return type.plugin.empty() ? kind + " of Shoal itself"
+                             : kind + " of plugin " + type.plugin + " " + type.plugin_version;
 }
 
 // The kernel's own or a plugin's types, by kind.
 std::string types_text(const Registry& registry, const std::string& plugin) {
   std::string text;
-  for (const shoal_type_kind kind : {SHOAL_TYPE_PHYSICS, SHOAL_TYPE_OPERATOR, SHOAL_TYPE_MATERIAL, SHOAL_TYPE_SHAPE,
-                                     SHOAL_TYPE_OUTPUT, SHOAL_TYPE_PROBE}) {
+  for (const shoal_type_kind kind : {SHOAL_TYPE_PHYSICS, SHOAL_TYPE_OPERATOR, SHOAL_TYPE_MATERIAL,
+                                     SHOAL_TYPE_SHAPE, SHOAL_TYPE_OUTPUT, SHOAL_TYPE_PROBE}) {
     std::vector<std::vector<std::string>> rows;
     for (const RegisteredType& type : registry.types())
-      if (type.kind == kind && type.plugin == plugin) rows.push_back({type.name, first_sentence(type.table.doc)});
+      if (type.kind == kind && type.plugin == plugin)
+        rows.push_back({type.name, first_sentence(type.table.doc)});
     if (!rows.empty()) text += type_kind_plural(kind) + "\n" + table(rows, 2, "  ");
   }
   return text;
@@ -47,7 +49,8 @@ std::string types_text(const Registry& registry, const std::string& plugin) {
 
 std::string sections_text() {
   std::vector<std::vector<std::string>> rows;
-  for (const shoal_type* section : section_tables()) rows.push_back({section->name, first_sentence(section->doc)});
+  for (const shoal_type* section : section_tables())
+    rows.push_back({section->name, first_sentence(section->doc)});
   return "sections of a case\n" + table(rows, 2, "  ");
 }
 
@@ -74,8 +77,10 @@ std::string plugin_text(const LoadedPlugin& plugin, const Registry& registry) {
 std::string everything_text(const Workshop& workshop) {
   std::string text = sections_text() + types_text(workshop.registry, "");
   const std::vector<std::string> plugins = workshop.loader.search_path().available();
-  text += "plugins: " + (plugins.empty() ? std::string("none found (shoal plugins says where they are looked for)")
-                                         : join(plugins)) + "\n";
+  text += "plugins: " +
+          (plugins.empty() ? std::string("none found (shoal plugins says where they are looked for)")
+                           : join(plugins)) +
+          "\n";
   return text + "more about each: shoal describe NAME\n";
 }
 
@@ -102,8 +107,10 @@ std::string description(Workshop& workshop, const std::string& name) {
   const LoadedPlugin* plugin = available ? &open_plugin(workshop, id) : nullptr;
   std::string text;
   if (const shoal_type* section = find_section(name)) text += describe_type(*section, "section");
-  for (const RegisteredType* type : workshop.registry.find(name)) text += describe_type(type->table, owner_of(*type));
-  if (plugin != nullptr && name == id) text += (text.empty() ? "" : "\n") + plugin_text(*plugin, workshop.registry);
+  for (const RegisteredType* type : workshop.registry.find(name))
+    text += describe_type(type->table, owner_of(*type));
+  if (plugin != nullptr && name == id)
+    text += (text.empty() ? "" : "\n") + plugin_text(*plugin, workshop.registry);
   if (text.empty()) unknown(workshop, name);
   return text;
 }
@@ -114,7 +121,8 @@ int describe(const Options& options) {
   Workshop workshop(options);
   std::string text;
   if (options.types.empty()) text = everything_text(workshop);
-  for (const std::string& name : options.types) text += (text.empty() ? "" : "\n") + description(workshop, name);
+  for (const std::string& name : options.types)
+    text += (text.empty() ? "" : "\n") + description(workshop, name);
   Console::print(text);
   Console::event({{"event", "describe"}, {"text", text}});
   return exit_done;
@@ -129,8 +137,12 @@ int list_plugins(const Options& options) {
     std::string says = good ? listing.plugin->summary : "cannot be loaded: " + listing.failure;
     if (!listing.hidden_by.empty()) says = "not used, since " + listing.hidden_by.string() + " comes first";
     rows.push_back({listing.id, version, says, listing.path.string()});
-    Console::event({{"event", "plugin"}, {"id", listing.id}, {"version", version}, {"path", listing.path.string()},
-                    {"origin", listing.origin}, {"hidden_by", listing.hidden_by.string()},
+    Console::event({{"event", "plugin"},
+                    {"id", listing.id},
+                    {"version", version},
+                    {"path", listing.path.string()},
+                    {"origin", listing.origin},
+                    {"hidden_by", listing.hidden_by.string()},
                     {"failure", listing.failure}});
   }
   Console::print(rows.empty() ? "no plugins found\n" : table(rows, 4, ""));

@@ -35,7 +35,8 @@ std::string local_time() {
 }
 
 int threads_of(const Options& options) {
-  return options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return options.threads > 0 ? options.threads
+                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
 Place option_place(const std::string& text) {
@@ -45,9 +46,15 @@ Place option_place(const std::string& text) {
 }  // namespace
 
 Driver::Driver(const Options& options, Session& session, ResultFolder folder, Clock::time_point begin)
-    : options_(options), session_(session), folder_(std::move(folder)), checkpoints_(folder_.checkpoints()),
-      effective_case_(effective_case(session.model())), started_(local_time()), begin_(begin),
-      last_checkpoint_(Clock::now()), checkpoint_due_(session.model().run.checkpoint_every, {}) {
+    : options_(options),
+      session_(session),
+      folder_(std::move(folder)),
+      checkpoints_(folder_.checkpoints()),
+      effective_case_(effective_case(session.model())),
+      started_(local_time()),
+      begin_(begin),
+      last_checkpoint_(Clock::now()),
+      checkpoint_due_(session.model().run.checkpoint_every, {}) {
   if (options.until) until_ = read_time("--until", *options.until);
   checkpoint_every_ =
       options.checkpoint_every.empty() ? 1800.0 : read_time("--checkpoint-every", options.checkpoint_every);
@@ -76,7 +83,8 @@ void Driver::resume() {
     if (!load(candidate)) continue;
     checkpoints_.remove_newer_than(candidate);
     // The file of the first session says where each value came from; it stays if it is still true.
-    if (!differences(read_whole_file(folder_.case_file()), effective_case_).empty()) folder_.write_case(effective_case_);
+    if (!differences(read_whole_file(folder_.case_file()), effective_case_).empty())
+      folder_.write_case(effective_case_);
     folder_.write_summary(to_json(summary("running")));
     tell_start("resume");
     return;
@@ -216,7 +224,8 @@ int Driver::finish(const std::string& status) {
   tell_end(result);
   if (status == "interrupted") return exit_interrupted;
   bool failed = false;
-  for (const ReferenceResult& reference : result.references) failed = failed || reference.verdict == Verdict::fail;
+  for (const ReferenceResult& reference : result.references)
+    failed = failed || reference.verdict == Verdict::fail;
   return failed && options_.strict ? exit_physics_failed : exit_done;
 }
 
@@ -233,7 +242,8 @@ int Driver::fail(const PhysicsFailure& failure) {
   if (!checkpoints_.newest_first().empty())
     text += "  go on from the last checkpoint with: shoal resume " + folder_.path().string() + "\n";
   Console::error(text);
-  Console::event({{"event", "end"}, {"status", "failed"}, {"cause", failure.report().cause}, {"time", run.time()}});
+  Console::event(
+      {{"event", "end"}, {"status", "failed"}, {"cause", failure.report().cause}, {"time", run.time()}});
   return exit_physics_failed;
 }
 

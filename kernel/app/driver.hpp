@@ -21,7 +21,8 @@ namespace shoal::kernel::app {
 class Driver {
  public:
   /// `begin`: when the program started.
-  Driver(const Options& options, Session& session, ResultFolder folder, std::chrono::steady_clock::time_point begin);
+  Driver(const Options& options, Session& session, ResultFolder folder,
+         std::chrono::steady_clock::time_point begin);
 
   /// A new run: initial state, first outputs.
   void start();

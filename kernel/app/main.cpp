@@ -42,7 +42,8 @@ int guarded(const Options& options) {
   } catch (const FolderError& error) {
     return told(exit_wrong_case, std::string("error: ") + error.what());
   } catch (const ModelError& error) {
-    return told(exit_wrong_case, (error.place().empty() ? "error: " : error.place() + ": error: ") + error.what());
+    return told(exit_wrong_case,
+                (error.place().empty() ? "error: " : error.place() + ": error: ") + error.what());
   } catch (const LoadFailure& error) {
     std::string text = std::string("error: ") + error.what();
     for (const std::string& note : error.notes()) text += "\n  " + note;
@@ -55,7 +56,8 @@ int guarded(const Options& options) {
                                                               : exit_program_failed;
     return told(code, std::string("error: ") + error.what());
   } catch (const std::bad_alloc&) {
-    return told(exit_program_failed, "error: there is not enough memory (shoal plan CASE says how much it takes)");
+    return told(exit_program_failed,
+                "error: there is not enough memory (shoal plan CASE says how much it takes)");
   } catch (const std::exception& error) {
     return told(exit_program_failed, std::string("error: ") + error.what());
   }

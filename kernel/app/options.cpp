@@ -38,7 +38,8 @@ void add_case(CLI::App& app, Options& options) {
 }
 
 void add_settings(CLI::App& app, Options& options) {
-  app.add_option("--set", options.settings, "Another value of a parameter or key: --set H=0.5m, --set run.end=1s")
+  app.add_option("--set", options.settings,
+                 "Another value of a parameter or key: --set H=0.5m, --set run.end=1s")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   app.add_option("--threads", options.threads, "Threads to compute with; all of the machine without it")
@@ -48,7 +49,8 @@ void add_settings(CLI::App& app, Options& options) {
 
 void add_running(CLI::App& app, Options& options) {
   app.add_flag("--strict", options.strict, "Exit code 3 if a reference is not met");
-  app.add_option("--until", options.until, "Stop at the first step at or after this time: 0.5s")->type_name("TIME");
+  app.add_option("--until", options.until, "Stop at the first step at or after this time: 0.5s")
+      ->type_name("TIME");
   app.add_option("--steps", options.steps, "Stop after so many outer steps")->type_name("N");
   app.add_option("--checkpoint-every", options.checkpoint_every,
                  "Wall time between checkpoints, beside those of the case; 0 for none")
@@ -85,7 +87,8 @@ Commands add_commands(CLI::App& app, Options& options) {
   add_running(*c.resume, options);
 
   c.describe = app.add_subcommand("describe", "Explain a section, a plugin or a type, and its keys");
-  c.describe->add_option("TYPE", options.types, "bodies, fluid, fluid.wcsph, box ...; all there is without it")
+  c.describe
+      ->add_option("TYPE", options.types, "bodies, fluid, fluid.wcsph, box ...; all there is without it")
       ->type_name("");
   c.plugins = app.add_subcommand("plugins", "List the plugins that are found, or why they are not");
   c.schema = app.add_subcommand("schema", "Print the JSON schema of cases, for the completion of editors");
@@ -100,10 +103,11 @@ std::optional<int> read_command_line(int argc, char** argv, Options& options) {
   CLI::App app("Shoal: smoothed particle hydrodynamics with plugins", "shoal");
   app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
-  app.footer("First steps:  shoal run cases/fluid/dam_break_2d.yaml\n"
-             "              shoal describe\n"
-             "Exit codes: 0 done, 1 the program failed, 2 the case or the command is wrong, 3 the physics failed,\n"
-             "130 interrupted (a checkpoint was written)");
+  app.footer(
+      "First steps:  shoal run cases/fluid/dam_break_2d.yaml\n"
+      "              shoal describe\n"
+      "Exit codes: 0 done, 1 the program failed, 2 the case or the command is wrong, 3 the physics failed,\n"
+      "130 interrupted (a checkpoint was written)");
   const Commands commands = add_commands(app, options);
   try {
     app.parse(argc, argv);
@@ -111,8 +115,9 @@ std::optional<int> read_command_line(int argc, char** argv, Options& options) {
     return app.exit(error, std::cout, std::cerr) == 0 ? exit_done : exit_wrong_case;
   }
   const std::vector<std::pair<CLI::App*, Command>> all{
-      {commands.run, Command::run},           {commands.check, Command::check},     {commands.plan, Command::plan},
-      {commands.describe, Command::describe}, {commands.plugins, Command::plugins}, {commands.resume, Command::resume},
+      {commands.run, Command::run},         {commands.check, Command::check},
+      {commands.plan, Command::plan},       {commands.describe, Command::describe},
+      {commands.plugins, Command::plugins}, {commands.resume, Command::resume},
       {commands.schema, Command::schema}};
   for (const auto& [app_of_command, command] : all)
     if (app_of_command->parsed()) options.command = command;

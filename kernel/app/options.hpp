@@ -21,17 +21,17 @@ struct Options {
   ConsoleSettings console;
   std::vector<std::filesystem::path> plugin_paths;
   bool allow_plugin_paths = false;
-  std::vector<std::string> settings;          ///< --set KEY=VALUE
-  int threads = 0;                            ///< 0: all
-  std::string case_file;                      ///< run, check, plan
-  std::filesystem::path folder;               ///< resume: of the results
+  std::vector<std::string> settings;  ///< --set KEY=VALUE
+  int threads = 0;                    ///< 0: all
+  std::string case_file;              ///< run, check, plan
+  std::filesystem::path folder;       ///< resume: of the results
   std::optional<std::filesystem::path> output;
   bool force = false;
   bool strict = false;
-  std::optional<std::string> until;           ///< a time with a unit
+  std::optional<std::string> until;  ///< a time with a unit
   std::optional<std::uint64_t> steps;
-  std::string checkpoint_every;               ///< wall time, with a unit
-  std::vector<std::string> types;             ///< describe
+  std::string checkpoint_every;    ///< wall time, with a unit
+  std::vector<std::string> types;  ///< describe
 };
 
 /// Reads the command line. Where it asks for help or is wrong, prints that and gives the exit code instead.

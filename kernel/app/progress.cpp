@@ -27,8 +27,13 @@ double share_of(const Simulation& run) { return run.end_time() > 0.0 ? run.time(
 }  // namespace
 
 Progress::Progress(const Simulation& run)
-    : begin_(Clock::now()), last_look_(begin_), last_shown_(begin_), start_time_(run.time()), last_time_(run.time()),
-      last_share_(share_of(run)), last_steps_(steps_of(run)) {}
+    : begin_(Clock::now()),
+      last_look_(begin_),
+      last_shown_(begin_),
+      start_time_(run.time()),
+      last_time_(run.time()),
+      last_share_(share_of(run)),
+      last_steps_(steps_of(run)) {}
 
 void Progress::estimate(const Simulation& run, Clock::time_point now) {
   const double wall = seconds(now - last_look_);
@@ -69,12 +74,15 @@ void Progress::show(const Simulation& run, Clock::time_point now) {
     return;
   }
   // Fits the 80 columns of a small terminal.
-  const std::string line = fmt::format(
-      "{:>9} / {}  {:>5}  dt {}  {} steps/s  {} particles  {} left", simulated_time_text(run.time()),
-      simulated_time_text(run.end_time()), percent_text(share_of(run)), simulated_time_text(run.last_outer_dt()),
-      significant(steps_per_second_, 3), count_text(run.n_particles()), duration_text(left));
-  if (Console::has_status_line()) Console::status(line);
-  else Console::inform(line);
+  const std::string line =
+      fmt::format("{:>9} / {}  {:>5}  dt {}  {} steps/s  {} particles  {} left",
+                  simulated_time_text(run.time()), simulated_time_text(run.end_time()),
+                  percent_text(share_of(run)), simulated_time_text(run.last_outer_dt()),
+                  significant(steps_per_second_, 3), count_text(run.n_particles()), duration_text(left));
+  if (Console::has_status_line())
+    Console::status(line);
+  else
+    Console::inform(line);
 }
 
 void Progress::end() { Console::status(""); }

@@ -63,7 +63,8 @@ void add_stage(const PlanStage& stage, const std::string& indent, std::string& t
   text += indent + stage.name + (stage.clears.empty() ? "" : "  (clears " + join(stage.clears) + ")") + "\n";
   for (const PlanOperator& op : stage.operators) {
     text += indent + "  " + operator_line(op) + "\n";
-    if (const std::string fields = fields_line(op); !fields.empty()) text += indent + "      " + fields + "\n";
+    if (const std::string fields = fields_line(op); !fields.empty())
+      text += indent + "      " + fields + "\n";
   }
   for (const PlanLoop& loop : stage.loops) add_loop(loop, indent + "  ", text);
 }
@@ -71,7 +72,8 @@ void add_stage(const PlanStage& stage, const std::string& indent, std::string& t
 void add_loop(const PlanLoop& loop, const std::string& indent, std::string& text) {
   text += indent + "loop " + loop.name;
   if (loop.renews_neighbours) text += "  (neighbours renewed in each step)";
-  if (loop.time_step_factor != 1.0) text += "  (time steps times " + significant(loop.time_step_factor, 4) + ")";
+  if (loop.time_step_factor != 1.0)
+    text += "  (time steps times " + significant(loop.time_step_factor, 4) + ")";
   text += "\n";
   for (const PlanStage& stage : loop.stages) add_stage(stage, indent + "  ", text);
 }
@@ -91,8 +93,9 @@ std::string relations_text(const Plan& plan) {
     rows.push_back({relation.body + " - " + relation.neighbours,
                     relation.configuration == SHOAL_REFERENCE ? "reference" : "current",
                     significant(relation.cutoff, 4) + " m", n > 0.0 ? sign + fmt::format("{:.0f}", n) : "-",
-                    built ? fmt::format("{:.0f}", relation.bytes_per_particle)
-                    : n > 0.0 ? fmt::format("~{:.0f}", 4.0 * (n + 4.0) + 12.0) : "-"});
+                    built     ? fmt::format("{:.0f}", relation.bytes_per_particle)
+                    : n > 0.0 ? fmt::format("~{:.0f}", 4.0 * (n + 4.0) + 12.0)
+                              : "-"});
   }
   return rows.size() > 1 ? table(rows, 2, "  ") : "";
 }
@@ -133,7 +136,8 @@ std::string plan_text(const Plan& plan) {
     text += stage.name == SHOAL_INITIAL ? "once, before the first step\n" : "before outputs and probes\n";
     add_stage(stage, "  ", text);
   }
-  if (!plan.outer_step_renews.empty()) text += "neighbours are renewed in each outer step (" + plan.outer_step_renews + ")\n";
+  if (!plan.outer_step_renews.empty())
+    text += "neighbours are renewed in each outer step (" + plan.outer_step_renews + ")\n";
   for (const PlanLoop& loop : plan.loops) add_loop(loop, "", text);
   if (const std::string relations = relations_text(plan); !relations.empty()) text += "\n" + relations;
   text += "\n";
@@ -142,15 +146,17 @@ std::string plan_text(const Plan& plan) {
     text += "not computed, since nothing asks for it: " + join(plan.unscheduled) + "\n";
   for (const std::string& note : plan.notes) text += "note: " + note + "\n";
   const double bytes = static_cast<double>(plan.total_bytes) + expected_list_bytes(plan);
-  text += fmt::format("\n{} particles; about {} of memory ({:.0f} bytes per particle)\n", count_text(plan.particles),
-                      bytes_text(bytes), plan.particles > 0 ? bytes / static_cast<double>(plan.particles) : 0.0);
+  text += fmt::format("\n{} particles; about {} of memory ({:.0f} bytes per particle)\n",
+                      count_text(plan.particles), bytes_text(bytes),
+                      plan.particles > 0 ? bytes / static_cast<double>(plan.particles) : 0.0);
   return text;
 }
 
 std::string bodies_text(const Plan& plan) {
   Rows rows;
   for (const PlanBody& body : plan.bodies)
-    rows.push_back({body.name, count_text(body.particles) + " particles", "spacing " + significant(body.spacing, 4) + " m"});
+    rows.push_back({body.name, count_text(body.particles) + " particles",
+                    "spacing " + significant(body.spacing, 4) + " m"});
   return table(rows, 1, "  ");
 }
 
@@ -168,7 +174,8 @@ std::string timings_text(const Summary& summary) {
     const double particles = static_cast<double>(op.particles);
     rows.push_back({op.name, op.body, op.loop, std::to_string(op.calls), time(op.seconds),
                     op.pairs > 0 ? fmt::format("{:.2f}", op.nanoseconds_per_pair()) : "",
-                    particles > 0.0 ? fmt::format("{:.1f}", 1e9 * op.seconds / particles) : "", share(op.seconds)});
+                    particles > 0.0 ? fmt::format("{:.1f}", 1e9 * op.seconds / particles) : "",
+                    share(op.seconds)});
   }
   rows.push_back({"neighbour search", "", "", std::to_string(t.renewals), time(t.neighbour_search), "", "",
                   share(t.neighbour_search)});
@@ -182,12 +189,13 @@ std::string timings_text(const Summary& summary) {
   const double per_particle = summary.plan.particles > 0 ? static_cast<double>(summary.plan.total_bytes) /
                                                                static_cast<double>(summary.plan.particles)
                                                          : 0.0;
-  return text + fmt::format("  {} particle-steps per second on {} thread{}; start {}, outputs {}, checkpoints {}\n"
-                            "  peak memory {}, {:.0f} bytes per particle in fields and lists\n",
-                            significant(particle_steps_per_second(summary.plan, t), 3), summary.threads,
-                            summary.threads == 1 ? "" : "s", duration_text(summary.startup_seconds),
-                            duration_text(summary.output_seconds), duration_text(summary.checkpoint_seconds),
-                            bytes_text(static_cast<double>(summary.peak_memory)), per_particle);
+  return text + fmt::format(
+                    "  {} particle-steps per second on {} thread{}; start {}, outputs {}, checkpoints {}\n"
+                    "  peak memory {}, {:.0f} bytes per particle in fields and lists\n",
+                    significant(particle_steps_per_second(summary.plan, t), 3), summary.threads,
+                    summary.threads == 1 ? "" : "s", duration_text(summary.startup_seconds),
+                    duration_text(summary.output_seconds), duration_text(summary.checkpoint_seconds),
+                    bytes_text(static_cast<double>(summary.peak_memory)), per_particle);
 }
 
 std::string references_text(const std::vector<ReferenceResult>& results) {
@@ -201,13 +209,13 @@ std::string references_text(const std::vector<ReferenceResult>& results) {
 }
 
 std::string failure_text(const PhysicsFailure::Report& report) {
-  std::string text = fmt::format("the physics failed at {} in step {} of loop {}: {}\n", simulated_time_text(report.time),
-                                 report.step, report.loop, report.cause);
+  std::string text = fmt::format("the physics failed at {} in step {} of loop {}: {}\n",
+                                 simulated_time_text(report.time), report.step, report.loop, report.cause);
   if (report.worst.empty()) return text;
   Rows rows{{"body", "field", "id", "x", "y", "z", "value"}};
   for (const PhysicsFailure::Particle& p : report.worst)
-    rows.push_back({p.body, p.field, std::to_string(p.id), significant(p.position[0], 6), significant(p.position[1], 6),
-                    significant(p.position[2], 6), significant(p.value, 6)});
+    rows.push_back({p.body, p.field, std::to_string(p.id), significant(p.position[0], 6),
+                    significant(p.position[1], 6), significant(p.position[2], 6), significant(p.value, 6)});
   return text + table(rows, 2, "  ");
 }
 

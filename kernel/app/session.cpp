@@ -47,9 +47,10 @@ Place place_of(const std::string& words, const CaseFile& file) {
 bool requires_plugin(const Loader& loader, std::string_view a, std::string_view b) {
   for (const LoadedPlugin* plugin : loader.loaded()) {
     if (plugin->id != a) continue;
-    return std::any_of(plugin->requirements.begin(), plugin->requirements.end(), [&](const Requirement& requirement) {
-      return requirement.id == b || requires_plugin(loader, requirement.id, b);
-    });
+    return std::any_of(plugin->requirements.begin(), plugin->requirements.end(),
+                       [&](const Requirement& requirement) {
+                         return requirement.id == b || requires_plugin(loader, requirement.id, b);
+                       });
   }
   return false;
 }

@@ -50,7 +50,8 @@ std::string percent_text(double share) {
 
 std::string significant(double value, int digits) { return fmt::format("{:.{}g}", value, digits); }
 
-std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t left, const std::string& indent) {
+std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t left,
+                  const std::string& indent) {
   std::vector<int> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()), 0);

@@ -33,7 +33,16 @@ PeriodicBox periodic_box(const CaseModel& model) {
   return box;
 }
 
-BodyParticles fill(const BodyModel& body, int dimensions) {
+// A shape may reach through a periodic face, so that its surface does not end there; its particles do.
+void cut_at_periodic_faces(std::vector<Point>& points, const PeriodicBox& box) {
+  std::erase_if(points, [&](const Point& point) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (box.periodic[k] && (point[k] < box.lower[k] || point[k] >= box.upper[k])) return true;
+    return false;
+  });
+}
+
+BodyParticles fill(const BodyModel& body, const PeriodicBox& box, int dimensions) {
   BodyParticles result{&body, make_shape(*body.shape, dimensions), {}};
   LatticeOptions options;
   options.kind = body.arrangement == "hexagonal" ? Lattice::hexagonal : Lattice::cubic;
@@ -45,6 +54,7 @@ BodyParticles fill(const BodyModel& body, int dimensions) {
   } catch (const std::logic_error& error) {  // invalid_argument, length_error
     throw ModelError("body '" + body.name + "': " + error.what(), body.place);
   }
+  cut_at_periodic_faces(result.points, box);
   if (result.points.empty())
     throw ModelError(
         "body '" + body.name + "' holds no particle: its shape is empty, or thinner than its resolution",
@@ -131,7 +141,7 @@ std::vector<std::vector<Point>> arrange_particles(const CaseModel& model, bool s
   const PeriodicBox box = periodic_box(model);
   std::vector<BodyParticles> bodies;
   for (const BodyModel& body : model.bodies) {
-    BodyParticles particles = fill(body, model.dimensions);
+    BodyParticles particles = fill(body, box, model.dimensions);
     for (const BodyParticles& earlier : bodies) leave_out_overlap(particles, earlier, box, model.dimensions);
     bodies.push_back(std::move(particles));
   }

@@ -15,7 +15,8 @@
 namespace shoal::kernel {
 namespace {
 
-constexpr std::array<char, 16> magic{'s', 'h', 'o', 'a', 'l', ' ', 'c', 'h', 'e', 'c', 'k', 'p', 'o', 'i', 'n', 't'};
+constexpr std::array<char, 16> magic{'s', 'h', 'o', 'a', 'l', ' ', 'c', 'h',
+                                     'e', 'c', 'k', 'p', 'o', 'i', 'n', 't'};
 constexpr std::uint64_t version = 1;
 constexpr std::uint64_t longest_header = 1ULL << 28;
 constexpr std::string_view extension = ".checkpoint";
@@ -76,17 +77,20 @@ void CheckpointStore::remove_newer_than(const std::filesystem::path& path) const
 
 void CheckpointStore::read(const std::filesystem::path& path,
                            const std::function<void(const std::string&, std::istream&)>& reader) {
-  const auto damaged = [&](const std::string& what) { return CheckpointError("'" + path.string() + "' " + what); };
+  const auto damaged = [&](const std::string& what) {
+    return CheckpointError("'" + path.string() + "' " + what);
+  };
   std::ifstream stream(path, std::ios::binary);
   Prefix prefix{};
   if (!stream.read(reinterpret_cast<char*>(&prefix), sizeof prefix) || prefix.magic != magic)
     throw damaged("is no checkpoint, or is damaged");
   if (prefix.version != version)
-    throw damaged("is a checkpoint of version " + std::to_string(prefix.version) + "; this program reads version " +
-                  std::to_string(version));
+    throw damaged("is a checkpoint of version " + std::to_string(prefix.version) +
+                  "; this program reads version " + std::to_string(version));
   if (prefix.header_bytes > longest_header) throw damaged("is damaged");
   std::string header(prefix.header_bytes, '\0');
-  if (!stream.read(header.data(), static_cast<std::streamsize>(header.size())) || sum_of(header) != prefix.header_sum)
+  if (!stream.read(header.data(), static_cast<std::streamsize>(header.size())) ||
+      sum_of(header) != prefix.header_sum)
     throw damaged("is damaged");
   reader(header, stream);
 }

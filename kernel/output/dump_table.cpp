@@ -16,7 +16,8 @@ void write_headers(std::ostream& stream, const Simulation& run, std::uint32_t bo
   for (const FieldInfo& field : run.fields(body)) {
     const std::vector<std::string> parts = part_names(field.rank, run.dimensions());
     for (std::uint32_t c = 0; c < field.components; ++c)
-      stream << ',' << field.name << (field.components == 1 ? "" : "." + parts[c]) << " [" << field.unit << ']';
+      stream << ',' << field.name << (field.components == 1 ? "" : "." + parts[c]) << " [" << field.unit
+             << ']';
   }
   stream << '\n';
 }
@@ -30,8 +31,10 @@ void write_rows(std::ostream& stream, const Simulation& run, std::uint32_t body)
       for (std::uint32_t c = 0; c < info.components; ++c) {
         const std::uint64_t k = i * info.components + c;
         stream << ',';
-        if (info.data_type == SHOAL_INT64) stream << static_cast<const std::int64_t*>(field.data)[k];
-        else stream << static_cast<const double*>(field.data)[k];
+        if (info.data_type == SHOAL_INT64)
+          stream << static_cast<const std::int64_t*>(field.data)[k];
+        else
+          stream << static_cast<const double*>(field.data)[k];
       }
     }
     stream << '\n';

@@ -24,7 +24,8 @@ std::vector<Component> components_of(shoal_rank rank, int dimensions) {
     if (rank == SHOAL_RANK_VECTOR) all.push_back({axes.substr(static_cast<std::size_t>(a), 1), {a, -1}});
     for (int b = rank == SHOAL_SYMMETRIC ? a : 0; b < dimensions; ++b) {
       if (rank == SHOAL_SYMMETRIC || rank == SHOAL_RANK_MATRIX)
-        all.push_back({std::string{axes[static_cast<std::size_t>(a)], axes[static_cast<std::size_t>(b)]}, {a, b}});
+        all.push_back(
+            {std::string{axes[static_cast<std::size_t>(a)], axes[static_cast<std::size_t>(b)]}, {a, b}});
     }
   }
   return all;
@@ -60,15 +61,20 @@ std::vector<std::string> part_names(shoal_rank rank, int dimensions) {
 }
 
 FieldPart::FieldPart(const FieldInfo& field, std::string_view name, int dimensions, const std::string& place)
-    : rank_(field.rank), data_type_(field.data_type), components_(field.components), dimensions_(dimensions),
+    : rank_(field.rank),
+      data_type_(field.data_type),
+      components_(field.components),
+      dimensions_(dimensions),
       unit_(field.unit) {
   const std::string part = part_of(name);
   std::vector<std::string> names = part_names(rank_, dimensions);
   if (part.empty() && rank_ == SHOAL_SCALAR) return;
-  if (rank_ == SHOAL_SCALAR) throw ModelError("the field '" + field.name + "' is a number and has no '" + part + "'", place);
+  if (rank_ == SHOAL_SCALAR)
+    throw ModelError("the field '" + field.name + "' is a number and has no '" + part + "'", place);
   if (part.empty()) {
     for (std::string& text : names) text.insert(0, field.name + ".");
-    throw ModelError("'" + field.name + "' is more than one number here; choose one of " + join(names), place);
+    throw ModelError("'" + field.name + "' is more than one number here; choose one of " + join(names),
+                     place);
   }
   if (part == "magnitude") {
     how_ = How::magnitude;
@@ -90,8 +96,8 @@ FieldPart::FieldPart(const FieldInfo& field, std::string_view name, int dimensio
     axes_ = all[k].axes;
     return;
   }
-  throw ModelError("the field '" + field.name + "' has no part '" + part + "'" + did_you_mean(part, names) + " (" +
-                       join(names) + ")",
+  throw ModelError("the field '" + field.name + "' has no part '" + part + "'" + did_you_mean(part, names) +
+                       " (" + join(names) + ")",
                    place);
 }
 
@@ -101,7 +107,8 @@ double FieldPart::number(const shoal_field& field, std::uint64_t index, std::uin
   return static_cast<const double*>(field.data)[k];
 }
 
-double FieldPart::value(const shoal_field& field, std::uint64_t index, const std::array<double, 3>& flip) const {
+double FieldPart::value(const shoal_field& field, std::uint64_t index,
+                        const std::array<double, 3>& flip) const {
   if (how_ == How::component) {
     double sign = 1.0;
     for (const int axis : axes_)

@@ -25,16 +25,22 @@ Due due_of(const shoal_object& object, const shoal_type& table) {
   std::optional<double> every;
   std::vector<double> at;
   if (const shoal_value* value = value_of(object, table, "every")) every = value->reals[0];
-  if (const shoal_value* value = value_of(object, table, "at")) at.assign(value->reals, value->reals + value->n);
+  if (const shoal_value* value = value_of(object, table, "at"))
+    at.assign(value->reals, value->reals + value->n);
   return {every, at};
 }
 
 }  // namespace
 
-OutputWriter::OutputWriter(const shoal_object& object, const CaseModel& model, std::string name, Simulation& run)
-    : object_(object), table_(model.store.table(object)),
-      api_(abi_copy(static_cast<const shoal_output_api*>(object.type->api))), name_(std::move(name)),
-      type_(object.type->name), plugin_(type_.substr(0, type_.find('.'))), title_(model.title),
+OutputWriter::OutputWriter(const shoal_object& object, const CaseModel& model, std::string name,
+                           Simulation& run)
+    : object_(object),
+      table_(model.store.table(object)),
+      api_(abi_copy(static_cast<const shoal_output_api*>(object.type->api))),
+      name_(std::move(name)),
+      type_(object.type->name),
+      plugin_(type_.substr(0, type_.find('.'))),
+      title_(model.title),
       due_(due_of(object, table_)) {
   choose_bodies(model);
   choose_fields(run);
@@ -79,7 +85,8 @@ void OutputWriter::bind(const Simulation& run) {
   if (!fields_given_) {
     for (SnapshotRequest::BodyFields& body : request_.bodies) {
       for (const FieldInfo& field : run.fields(body.body))
-        if (field.name != "position" && find_shared_field(field.name) != nullptr) body.fields.push_back(field.name);
+        if (field.name != "position" && find_shared_field(field.name) != nullptr)
+          body.fields.push_back(field.name);
     }
   }
   // What is wrong with a name is found now, not at the first picture.
@@ -89,9 +96,8 @@ void OutputWriter::bind(const Simulation& run) {
 void* OutputWriter::create(const std::filesystem::path& folder, std::uint64_t sequence) const {
   make_folder(folder);
   void* self = nullptr;
-  call_plugin(plugin_, type_, [&] {
-    return api_.create(&object_, folder.c_str(), title_.c_str(), sequence, &self);
-  });
+  call_plugin(plugin_, type_,
+              [&] { return api_.create(&object_, folder.c_str(), title_.c_str(), sequence, &self); });
   return self;
 }
 

@@ -29,14 +29,16 @@ Expression parse(const std::string& text, ExpressionScope scope, int dimensions,
 
 ParticleExpression::ParticleExpression(const std::string& text, ExpressionScope parameters, int dimensions,
                                        std::string place)
-    : expression_(parse(text, std::move(parameters), dimensions, place)), dimensions_(dimensions),
+    : expression_(parse(text, std::move(parameters), dimensions, place)),
+      dimensions_(dimensions),
       place_(std::move(place)) {}
 
 std::vector<std::string> ParticleExpression::fields() const {
   std::vector<std::string> fields;
   for (const std::string& name : expression_.fields()) {
     const std::string field = field_of(name);
-    if (field != "position" && std::find(fields.begin(), fields.end(), field) == fields.end()) fields.push_back(field);
+    if (field != "position" && std::find(fields.begin(), fields.end(), field) == fields.end())
+      fields.push_back(field);
   }
   return fields;
 }
@@ -70,8 +72,8 @@ const ParticleExpression::Bound& ParticleExpression::bound(std::uint32_t body) c
   throw std::logic_error("an expression is evaluated for a body that it is not bound to");
 }
 
-void ParticleExpression::evaluate(const Simulation& run, std::uint32_t body, std::uint64_t begin, std::uint64_t end,
-                                  double* out) const {
+void ParticleExpression::evaluate(const Simulation& run, std::uint32_t body, std::uint64_t begin,
+                                  std::uint64_t end, double* out) const {
   const Bound& names = bound(body);
   const std::uint64_t n = end - begin;
   std::vector<std::vector<double>> values(names.parts.size());
@@ -79,12 +81,13 @@ void ParticleExpression::evaluate(const Simulation& run, std::uint32_t body, std
   for (std::size_t k = 0; k < names.parts.size(); ++k) {
     const shoal_field field = run.field(body, field_of(expression_.fields()[k]));
     values[k].resize(n);
-    for (std::uint64_t i = 0; i < n; ++i) values[k][i] = names.parts[k].value(field, begin + i, {1.0, 1.0, 1.0});
+    for (std::uint64_t i = 0; i < n; ++i)
+      values[k][i] = names.parts[k].value(field, begin + i, {1.0, 1.0, 1.0});
     columns.push_back(values[k].data());
   }
   const auto* positions = static_cast<const double*>(run.field(body, "position").data);
-  expression_.evaluate(dimensions_, n, positions + begin * static_cast<std::uint64_t>(dimensions_), columns.data(),
-                       run.time(), out);
+  expression_.evaluate(dimensions_, n, positions + begin * static_cast<std::uint64_t>(dimensions_),
+                       columns.data(), run.time(), out);
 }
 
 std::vector<double> ParticleExpression::evaluate(const Simulation& run, std::uint32_t body,
@@ -105,7 +108,8 @@ std::vector<double> ParticleExpression::evaluate(const Simulation& run, std::uin
   std::vector<double> positions, out(particles.size());
   for (const ParticleImage& particle : particles)
     positions.insert(positions.end(), particle.position.begin(), particle.position.begin() + dimensions_);
-  expression_.evaluate(dimensions_, particles.size(), positions.data(), columns.data(), run.time(), out.data());
+  expression_.evaluate(dimensions_, particles.size(), positions.data(), columns.data(), run.time(),
+                       out.data());
   return out;
 }
 

@@ -37,7 +37,8 @@ class ParticleExpression {
   /// Looks the fields of `body` up; once all fields are there. Throws ModelError.
   void bind(const Simulation& run, std::uint32_t body);
   /// Values of particles begin .. end-1 of a bound body. [any thread]
-  void evaluate(const Simulation& run, std::uint32_t body, std::uint64_t begin, std::uint64_t end, double* out) const;
+  void evaluate(const Simulation& run, std::uint32_t body, std::uint64_t begin, std::uint64_t end,
+                double* out) const;
   /// Values of chosen particles or images.
   std::vector<double> evaluate(const Simulation& run, std::uint32_t body,
                                const std::vector<ParticleImage>& particles) const;

@@ -64,9 +64,7 @@ std::string free_name(const std::string& type, std::set<std::string>& taken) {
 class Stopwatch {
  public:
   explicit Stopwatch(double& total) : total_(total) {}
-  ~Stopwatch() {
-    total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
+  ~Stopwatch() { total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
 
  private:
   double& total_;
@@ -78,7 +76,8 @@ class Stopwatch {
 Recorder::Recorder(const CaseModel& model, Simulation& run) : model_(model) {
   std::set<std::string> taken{"probes", "checkpoints", "failure"};
   for (const shoal_object* object : model.outputs)
-    outputs_.push_back(std::make_unique<OutputWriter>(*object, model, free_name(object->type->name, taken), run));
+    outputs_.push_back(
+        std::make_unique<OutputWriter>(*object, model, free_name(object->type->name, taken), run));
   const shoal_builder* builder = run.builder();
   for (const ProbeModel& probe : model.probes) {
     const ProbeContext context{probe.name,       model.dimensions, model.parameters.scope({}),
@@ -116,7 +115,9 @@ void Recorder::bind(const Simulation& run) {
   }
 }
 
-std::filesystem::path Recorder::file_of(const std::string& probe) const { return folder_ / "probes" / (probe + ".csv"); }
+std::filesystem::path Recorder::file_of(const std::string& probe) const {
+  return folder_ / "probes" / (probe + ".csv");
+}
 
 void Recorder::open(const std::filesystem::path& folder) { open(folder, RecorderState{}); }
 
@@ -129,8 +130,9 @@ void Recorder::open(const std::filesystem::path& folder, const RecorderState& st
   }
   if (!probes_.empty()) make_folder(folder / "probes");
   for (ProbeOfCase& probe : probes_) {
-    const auto known = std::find_if(state.series.begin(), state.series.end(),
-                                    [&](const auto& candidate) { return candidate.probe == probe.model->name; });
+    const auto known = std::find_if(state.series.begin(), state.series.end(), [&](const auto& candidate) {
+      return candidate.probe == probe.model->name;
+    });
     const std::vector<Column> columns = probe.probe->columns();
     const std::filesystem::path path = file_of(probe.model->name);
     probe.file = known == state.series.end() ? std::make_unique<SeriesFile>(path, columns)
@@ -183,8 +185,10 @@ std::vector<ReferenceResult> Recorder::compare_references(bool finished) const {
 }
 
 void Recorder::dump(const Simulation& run, const std::filesystem::path& folder) const {
-  if (outputs_.empty()) dump_tables(run, folder);
-  else outputs_.front()->dump(run, folder);
+  if (outputs_.empty())
+    dump_tables(run, folder);
+  else
+    outputs_.front()->dump(run, folder);
 }
 
 }  // namespace shoal::kernel

@@ -36,9 +36,11 @@ std::size_t column_of(const Table& table, const std::string& wanted, const std::
   const std::size_t n = table.rows[0].size();
   std::size_t number = 0;
   const char* last = wanted.data() + wanted.size();
-  if (std::from_chars(wanted.data(), last, number).ptr == last && number >= 1 && number <= n) return number - 1;
-  throw OutputError("'" + path.string() + "' has no column '" + wanted + "'; it has " +
-                    (table.names.empty() ? std::to_string(n) + " columns without names" : joined(table.names)));
+  if (std::from_chars(wanted.data(), last, number).ptr == last && number >= 1 && number <= n)
+    return number - 1;
+  throw OutputError(
+      "'" + path.string() + "' has no column '" + wanted + "'; it has " +
+      (table.names.empty() ? std::to_string(n) + " columns without names" : joined(table.names)));
 }
 
 Series sorted(Series series) {
@@ -57,7 +59,8 @@ Series sorted(Series series) {
 // Linear between samples; NaN where either side is, or outside.
 double value_at(const Series& series, double time) {
   const double slack = 1e-9 * std::abs(time);
-  if (series.times.empty() || time < series.times.front() - slack || time > series.times.back() + slack) return nan;
+  if (series.times.empty() || time < series.times.front() - slack || time > series.times.back() + slack)
+    return nan;
   const auto after = std::upper_bound(series.times.begin(), series.times.end(), time);
   if (after == series.times.begin()) return series.values.front();
   if (after == series.times.end()) return series.values.back();
@@ -126,8 +129,10 @@ Pairs peak_pairs(const ReferenceSpecification& specification, const Series& samp
   double peak = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < sampled.times.size(); ++k) {
     if (!in_window(specification, sampled.times[k])) continue;
-    if (std::isnan(sampled.values[k])) ++pairs.left_out;
-    else peak = std::max(peak, sampled.values[k]);
+    if (std::isnan(sampled.values[k]))
+      ++pairs.left_out;
+    else
+      peak = std::max(peak, sampled.values[k]);
   }
   if (std::isfinite(peak)) {
     for (const double value : known.values) pairs.reference.push_back(value);
@@ -167,13 +172,15 @@ Series read_reference(const ReferenceSpecification& specification) {
 void check_reference(const ReferenceSpecification& specification) {
   if (specification.exact) return;
   if (read_reference(specification).times.empty())
-    throw OutputError("'" + specification.data.string() + "' has no point between the times that are to be compared");
+    throw OutputError("'" + specification.data.string() +
+                      "' has no point between the times that are to be compared");
 }
 
 ReferenceResult compare(const ReferenceSpecification& specification, const Series& sampled, bool finished) {
   ReferenceResult result;
   result.probe = specification.probe;
-  result.source = specification.exact ? "exact: " + specification.exact_text : specification.data.filename().string();
+  result.source =
+      specification.exact ? "exact: " + specification.exact_text : specification.data.filename().string();
   result.measure = std::string(name_of(specification.measure));
   result.tolerance = specification.tolerance;
   Series known;
@@ -190,7 +197,8 @@ ReferenceResult compare(const ReferenceSpecification& specification, const Serie
   if (specification.measure == ErrorMeasure::peak) {
     pairs = peak_pairs(specification, sampled, known);
   } else {
-    for (std::size_t k = 0; k < known.times.size(); ++k) pairs.add(value_at(sampled, known.times[k]), known.values[k]);
+    for (std::size_t k = 0; k < known.times.size(); ++k)
+      pairs.add(value_at(sampled, known.times[k]), known.values[k]);
   }
   result.points = pairs.sampled.size();
   result.left_out = pairs.left_out;
@@ -200,12 +208,17 @@ ReferenceResult compare(const ReferenceSpecification& specification, const Serie
   } else {
     const double by = divisor(specification, pairs);
     result.error = difference(specification.measure, pairs) / by;
-    if (by == 0.0) result.remark = "the reference is zero: give `scale`, what errors are to be divided by";
-    else if (result.left_out > 0) result.remark = std::to_string(result.left_out) + " points without a value left out";
+    if (by == 0.0)
+      result.remark = "the reference is zero: give `scale`, what errors are to be divided by";
+    else if (result.left_out > 0)
+      result.remark = std::to_string(result.left_out) + " points without a value left out";
   }
-  const bool whole = finished || (specification.to && !sampled.times.empty() && sampled.times.back() >= *specification.to);
-  if (!whole) result.verdict = Verdict::incomplete;
-  else result.verdict = result.error <= result.tolerance ? Verdict::pass : Verdict::fail;
+  const bool whole =
+      finished || (specification.to && !sampled.times.empty() && sampled.times.back() >= *specification.to);
+  if (!whole)
+    result.verdict = Verdict::incomplete;
+  else
+    result.verdict = result.error <= result.tolerance ? Verdict::pass : Verdict::fail;
   return result;
 }
 

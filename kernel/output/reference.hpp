@@ -31,18 +31,18 @@ std::string_view name_of(ErrorMeasure measure);
 
 struct ReferenceSpecification {
   std::string probe;
-  std::string column;                   ///< of the probe; empty: its first
-  std::filesystem::path data;           ///< CSV; empty where `exact` is set
-  std::string time_column = "1";        ///< by name, or by number from 1
+  std::string column;             ///< of the probe; empty: its first
+  std::filesystem::path data;     ///< CSV; empty where `exact` is set
+  std::string time_column = "1";  ///< by name, or by number from 1
   std::string value_column = "2";
-  double time_scale = 1.0, time_shift = 0.0;    ///< time in s = scale * column + shift
+  double time_scale = 1.0, time_shift = 0.0;  ///< time in s = scale * column + shift
   double value_scale = 1.0, value_shift = 0.0;
   std::function<double(double t)> exact;
   std::string exact_text;
   ErrorMeasure measure = ErrorMeasure::rms;
   double tolerance = 0.0;
-  std::optional<double> scale;          ///< what differences are divided by, instead of the above
-  double from = 0.0;                    ///< s; what is before and behind is not compared
+  std::optional<double> scale;  ///< what differences are divided by, instead of the above
+  double from = 0.0;            ///< s; what is before and behind is not compared
   std::optional<double> to;
 };
 
@@ -52,12 +52,12 @@ std::string_view name_of(Verdict verdict);
 struct ReferenceResult {
   std::string probe, source;
   std::string measure;
-  double error = 0.0;                   ///< NaN where nothing could be compared
+  double error = 0.0;  ///< NaN where nothing could be compared
   double tolerance = 0.0;
   Verdict verdict = Verdict::fail;
-  std::uint64_t points = 0;             ///< compared
-  std::uint64_t left_out = 0;           ///< where the probe has no value (NaN)
-  std::string remark;                   ///< why there is no error, what was left out
+  std::uint64_t points = 0;    ///< compared
+  std::uint64_t left_out = 0;  ///< where the probe has no value (NaN)
+  std::string remark;          ///< why there is no error, what was left out
 };
 
 /// A series of times, ascending, and values.

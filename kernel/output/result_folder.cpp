@@ -59,7 +59,9 @@ ResultFolder::ResultFolder(std::filesystem::path path) : path_(std::move(path)) 
 }
 
 ResultFolder::ResultFolder(ResultFolder&& other) noexcept
-    : path_(std::move(other.path_)), replaced_(std::move(other.replaced_)), lock_(std::exchange(other.lock_, -1)) {}
+    : path_(std::move(other.path_)),
+      replaced_(std::move(other.replaced_)),
+      lock_(std::exchange(other.lock_, -1)) {}
 
 ResultFolder::~ResultFolder() {
   if (lock_ >= 0) ::close(lock_);
@@ -73,10 +75,12 @@ void ResultFolder::check_free(const std::filesystem::path& folder, bool replace)
   if (is_file(lock_file(path))) const ResultFolder probe(path);  // not while another run writes there
   if (holds_nothing(path)) return;
   if (!is_results(path))
-    throw FolderError("'" + path.string() + "' exists and holds something else than results of Shoal; choose another " +
+    throw FolderError("'" + path.string() +
+                      "' exists and holds something else than results of Shoal; choose another " +
                       "folder with --output FOLDER");
   if (!replace)
-    throw FolderError("'" + path.string() + "' holds results already; replace them with --force, write elsewhere with " +
+    throw FolderError("'" + path.string() +
+                      "' holds results already; replace them with --force, write elsewhere with " +
                       "--output FOLDER, or go on with them: shoal resume " + path.string());
 }
 

@@ -29,8 +29,8 @@ void flatten(const Node& node, const std::string& path, Flat& flat) {
 }
 
 bool is_physics(const std::string& path) {
-  static const std::array<std::string, 7> others{"title", "run.end", "run.checkpoint_every", "output", "probes",
-                                                 "reference", "plugins"};
+  static const std::array<std::string, 7> others{
+      "title", "run.end", "run.checkpoint_every", "output", "probes", "reference", "plugins"};
   return std::none_of(others.begin(), others.end(), [&](const std::string& other) {
     return path == other || path.rfind(other + ".", 0) == 0 || path.rfind(other + "[", 0) == 0;
   });
@@ -48,8 +48,10 @@ std::vector<std::string> compare(const Flat& before, const Flat& now, bool (*cou
   for (const auto& [path, value] : before) {
     const auto other = now.find(path);
     if (!counts(path)) continue;
-    if (other == now.end()) lines.push_back(path + ": " + value + " -> (none)");
-    else if (other->second != value) lines.push_back(path + ": " + value + " -> " + other->second);
+    if (other == now.end())
+      lines.push_back(path + ": " + value + " -> (none)");
+    else if (other->second != value)
+      lines.push_back(path + ": " + value + " -> " + other->second);
   }
   for (const auto& [path, value] : now)
     if (before.count(path) == 0 && counts(path)) lines.push_back(path + ": (none) -> " + value);
@@ -91,7 +93,8 @@ RunState state_from_text(const std::string& text) {
 }
 
 std::vector<std::string> differences(const std::string& before, const std::string& now) {
-  return compare(flat_case(before, "<before>"), flat_case(now, "<now>"), [](const std::string&) { return true; });
+  return compare(flat_case(before, "<before>"), flat_case(now, "<now>"),
+                 [](const std::string&) { return true; });
 }
 
 std::vector<std::string> differing_physics(const std::string& before, const std::string& now) {

@@ -12,10 +12,10 @@
 namespace shoal::kernel {
 
 struct RunState {
-  std::string version;          ///< of Shoal
+  std::string version;  ///< of Shoal
   std::string effective_case;
-  double time = 0.0;            ///< s
-  double wall_seconds = 0.0;    ///< of all sessions until then
+  double time = 0.0;          ///< s
+  double wall_seconds = 0.0;  ///< of all sessions until then
   RecorderState recorder;
 };
 

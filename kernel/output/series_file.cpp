@@ -81,7 +81,8 @@ bool parse(const std::string& text, double& value) {
 
 }  // namespace
 
-SeriesFile::SeriesFile(std::filesystem::path path, const std::vector<Column>& columns) : path_(std::move(path)) {
+SeriesFile::SeriesFile(std::filesystem::path path, const std::vector<Column>& columns)
+    : path_(std::move(path)) {
   open(O_CREAT | O_TRUNC);
   write(headers(columns));
 }

@@ -34,7 +34,8 @@ class Snapshot {
   const shoal_snapshot* c() const { return &snapshot_; }
 
  private:
-  shoal_snapshot_field field(const Simulation& run, const SnapshotRequest::BodyFields& wanted, const std::string& name);
+  shoal_snapshot_field field(const Simulation& run, const SnapshotRequest::BodyFields& wanted,
+                             const std::string& name);
 
   shoal_snapshot snapshot_{};
   std::vector<shoal_snapshot_body> bodies_;

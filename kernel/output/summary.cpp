@@ -49,16 +49,17 @@ Json loops(const Summary& summary) {
 Json operators(const Timings& timings) {
   Json list = Json::array();
   for (const OperatorTiming& op : timings.operators) {
-    list.push_back({{"name", op.name},
-                    {"body", op.body},
-                    {"loop", op.loop},
-                    {"stage", op.stage},
-                    {"calls", op.calls},
-                    {"seconds", op.seconds},
-                    {"particles", op.particles},
-                    {"pairs", op.pairs},
-                    {"nanoseconds_per_pair", op.pairs > 0 ? number(op.nanoseconds_per_pair()) : Json(nullptr)},
-                    {"share", timings.steps > 0.0 ? number(op.seconds / timings.steps) : Json(nullptr)}});
+    list.push_back(
+        {{"name", op.name},
+         {"body", op.body},
+         {"loop", op.loop},
+         {"stage", op.stage},
+         {"calls", op.calls},
+         {"seconds", op.seconds},
+         {"particles", op.particles},
+         {"pairs", op.pairs},
+         {"nanoseconds_per_pair", op.pairs > 0 ? number(op.nanoseconds_per_pair()) : Json(nullptr)},
+         {"share", timings.steps > 0.0 ? number(op.seconds / timings.steps) : Json(nullptr)}});
   }
   return list;
 }
@@ -95,10 +96,10 @@ Json costs(const Summary& summary) {
           {"sorts", t.sorts},
           {"particle_steps_per_second", number(particle_steps_per_second(summary.plan, t))},
           {"peak_memory_bytes", summary.peak_memory},
-          {"field_and_list_bytes_per_particle",
-           summary.plan.particles > 0
-               ? number(static_cast<double>(summary.plan.total_bytes) / static_cast<double>(summary.plan.particles))
-               : Json(nullptr)}};
+          {"field_and_list_bytes_per_particle", summary.plan.particles > 0
+                                                    ? number(static_cast<double>(summary.plan.total_bytes) /
+                                                             static_cast<double>(summary.plan.particles))
+                                                    : Json(nullptr)}};
 }
 
 }  // namespace
@@ -107,28 +108,30 @@ std::string to_json(const Summary& summary) {
   Json plugins = Json::array();
   for (const Summary::Plugin& plugin : summary.plugins)
     plugins.push_back({{"id", plugin.id}, {"version", plugin.version}, {"path", plugin.path}});
-  const Json json{{"title", summary.title},
-                  {"case", summary.case_file},
-                  {"folder", summary.folder},
-                  {"status", summary.status},
-                  {"failure", summary.failure},
-                  {"started", summary.started},
-                  {"shoal", {{"version", summary.version},
-                             {"compiler", summary.compiler},
-                             {"build_type", summary.build_type},
-                             {"flags", summary.flags}}},
-                  {"plugins", plugins},
-                  {"threads", summary.threads},
-                  {"dimensions", summary.dimensions},
-                  {"particles", summary.plan.particles},
-                  {"moving_particles", moving_particles(summary.plan)},
-                  {"bodies", bodies(summary.plan)},
-                  {"time", {{"start", summary.start_time}, {"reached", summary.time}, {"end", summary.end_time}}},
-                  {"outer_steps", summary.outer_steps},
-                  {"loops", loops(summary)},
-                  {"cost", costs(summary)},
-                  {"operators", operators(summary.timings)},
-                  {"references", references(summary.references)}};
+  const Json json{
+      {"title", summary.title},
+      {"case", summary.case_file},
+      {"folder", summary.folder},
+      {"status", summary.status},
+      {"failure", summary.failure},
+      {"started", summary.started},
+      {"shoal",
+       {{"version", summary.version},
+        {"compiler", summary.compiler},
+        {"build_type", summary.build_type},
+        {"flags", summary.flags}}},
+      {"plugins", plugins},
+      {"threads", summary.threads},
+      {"dimensions", summary.dimensions},
+      {"particles", summary.plan.particles},
+      {"moving_particles", moving_particles(summary.plan)},
+      {"bodies", bodies(summary.plan)},
+      {"time", {{"start", summary.start_time}, {"reached", summary.time}, {"end", summary.end_time}}},
+      {"outer_steps", summary.outer_steps},
+      {"loops", loops(summary)},
+      {"cost", costs(summary)},
+      {"operators", operators(summary.timings)},
+      {"references", references(summary.references)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -142,8 +145,9 @@ std::uint64_t moving_particles(const Plan& plan) {
 double particle_steps_per_second(const Plan& plan, const Timings& timings) {
   std::uint64_t steps = 0;
   for (const LoopTiming& loop : timings.loops) steps = std::max(steps, loop.steps);
-  return timings.steps > 0.0 ? static_cast<double>(moving_particles(plan)) * static_cast<double>(steps) / timings.steps
-                             : 0.0;
+  return timings.steps > 0.0
+             ? static_cast<double>(moving_particles(plan)) * static_cast<double>(steps) / timings.steps
+             : 0.0;
 }
 
 std::uint64_t peak_memory() {

@@ -23,18 +23,18 @@ struct Summary {
   std::vector<Plugin> plugins;
   int dimensions = 0;
   int threads = 0;
-  std::string started;                  ///< local time, ISO 8601
+  std::string started;  ///< local time, ISO 8601
   /// running, finished, stopped (as asked), interrupted, failed
   std::string status;
-  std::string failure;                  ///< why, if it failed
+  std::string failure;                                  ///< why, if it failed
   double time = 0.0, start_time = 0.0, end_time = 0.0;  ///< s of simulated time
-  std::uint64_t outer_steps = 0;        ///< of all sessions
-  double wall_seconds = 0.0;            ///< of this session, from the start of the program
-  double earlier_wall_seconds = 0.0;    ///< of the sessions that it goes on from
-  double startup_seconds = 0.0;         ///< until the first step
-  double output_seconds = 0.0;          ///< outputs and probes
+  std::uint64_t outer_steps = 0;                        ///< of all sessions
+  double wall_seconds = 0.0;                            ///< of this session, from the start of the program
+  double earlier_wall_seconds = 0.0;                    ///< of the sessions that it goes on from
+  double startup_seconds = 0.0;                         ///< until the first step
+  double output_seconds = 0.0;                          ///< outputs and probes
   double checkpoint_seconds = 0.0;
-  std::uint64_t peak_memory = 0;        ///< bytes of the process
+  std::uint64_t peak_memory = 0;  ///< bytes of the process
   Plan plan;
   Timings timings;
   std::vector<ReferenceResult> references;

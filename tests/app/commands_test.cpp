@@ -68,8 +68,9 @@ TEST_CASE("exit code 2 for what is wrong with the case, with its place") {
   write("wrong.yaml", grains("", "bodies: [pile], stifness: 1"));
   const Result key = shoal({"check", "wrong.yaml"});
   CHECK(key.code == 2);
-  CHECK(contains(key.err, "wrong.yaml:14:38: error: unknown key 'stifness' in grains.falling; did you mean "
-                          "'stiffness'?"));
+  CHECK(contains(key.err,
+                 "wrong.yaml:14:38: error: unknown key 'stifness' in grains.falling; did you mean "
+                 "'stiffness'?"));
 
   write("field.yaml", grains("output:\n  - grains.tables: {every: 1 ms, fields: [velocity, vorticity]}\n"));
   const Result field = shoal({"check", "field.yaml"});
@@ -90,8 +91,9 @@ TEST_CASE("exit code 2 for what is wrong with the case, with its place") {
   CHECK(part.code == 2);
   CHECK(contains(part.err, "the field 'velocity' has no part 'z' (x, y, magnitude)"));
 
-  write("data.yaml", grains("probes:\n  p: {sum: {of: mass, body: pile}, every: 1 ms}\n"
-                            "reference:\n  - {probe: p, data: data.csv, value_column: weight, tolerance: 1 %}\n"));
+  write("data.yaml",
+        grains("probes:\n  p: {sum: {of: mass, body: pile}, every: 1 ms}\n"
+               "reference:\n  - {probe: p, data: data.csv, value_column: weight, tolerance: 1 %}\n"));
   write("data.csv", "time,mass\n0,2000\n");
   const Result data = shoal({"check", "data.yaml"});
   CHECK(data.code == 2);
@@ -131,7 +133,8 @@ TEST_CASE("a reference that is not met is said, and is an error with --strict") 
   CHECK(plain.code == 0);
   CHECK(contains(plain.out, "FAIL"));
   CHECK(shoal({"run", "strict.yaml", "-o", "strict", "--force", "--strict"}).code == 3);
-  const Result stopped = shoal({"run", "strict.yaml", "-o", "strict", "--force", "--strict", "--until", "50 ms"});
+  const Result stopped =
+      shoal({"run", "strict.yaml", "-o", "strict", "--force", "--strict", "--until", "50 ms"});
   CHECK(stopped.code == 0);
   CHECK(contains(stopped.out, "incomplete"));
 }
@@ -140,10 +143,11 @@ TEST_CASE("plan shows the tree, memory, and what is not computed") {
   write("pile.yaml", grains(""));
   const Result result = shoal({"plan", "pile.yaml", "--set", "dx=0.05"});
   REQUIRE(result.code == 0);
-  for (const char* part : {"plugins: grains 1.0.0", "loop motion", "forces  (clears pile.acceleration)",
-                           "grains.repulsion  on pile with pile", "limits the time step", "pile: 800 particles",
-                           "bytes per particle", "not computed, since nothing asks for it: grains.kinetic_energy on pile",
-                           "note: grains of stiffness 50"})
+  for (const char* part :
+       {"plugins: grains 1.0.0", "loop motion", "forces  (clears pile.acceleration)",
+        "grains.repulsion  on pile with pile", "limits the time step", "pile: 800 particles",
+        "bytes per particle", "not computed, since nothing asks for it: grains.kinetic_energy on pile",
+        "note: grains of stiffness 50"})
     CHECK_MESSAGE(contains(result.out, part), part);
   CHECK_FALSE(std::filesystem::exists("results/plan"));
   write("energy.yaml", grains("probes:\n  e: {sum: {of: kinetic_energy, body: pile}, every: 1 ms}\n"));

@@ -30,7 +30,8 @@ double wendland(double r) {
   return 7.0 / (4.0 * std::numbers::pi * h * h) * std::pow(1.0 - 0.5 * q, 4) * (1.0 + 2.0 * q);
 }
 
-double shepard(const std::vector<Grain>& grains, double x, double y, const std::function<double(const Grain&)>& f) {
+double shepard(const std::vector<Grain>& grains, double x, double y,
+               const std::function<double(const Grain&)>& f) {
   double sum = 0.0, weight = 0.0;
   for (const Grain& grain : grains) {
     const double w = wendland(std::hypot(grain.x - x, grain.y - y));
@@ -175,15 +176,18 @@ TEST_CASE("probes of plugins: named columns, fields on demand, failures") {
   CHECK(first("plugin_probe", "centre")[1] == doctest::Approx(1.0).epsilon(1e-12));
   CHECK(first("plugin_probe", "centre")[2] == doctest::Approx(2000.0).epsilon(1e-12));
   CHECK(first("plugin_probe", "energy")[2] > 0.0);
-  const Result part = run_once("plugin_probe", grains("probes:\n  p: {grains.centre: {body: pile, field: velocity.y}, "
-                                                      "every: 1 ms}\n"));
+  const Result part =
+      run_once("plugin_probe", grains("probes:\n  p: {grains.centre: {body: pile, field: velocity.y}, "
+                                      "every: 1 ms}\n"));
   CHECK(part.code == 0);
-  const Result unknown = run_once("plugin_probe", grains("probes:\n  p: {grains.centre: {body: pile, field: charge}, "
-                                                         "every: 1 ms}\n"));
+  const Result unknown =
+      run_once("plugin_probe", grains("probes:\n  p: {grains.centre: {body: pile, field: charge}, "
+                                      "every: 1 ms}\n"));
   CHECK(unknown.code == 2);
   CHECK(contains(unknown.err, "has no field 'charge'"));
-  const Result fails = run_once("plugin_probe", grains("probes:\n  p: {grains.centre: {body: pile, field: acceleration.x}"
-                                                       ", every: 1 ms}\n"));
+  const Result fails =
+      run_once("plugin_probe", grains("probes:\n  p: {grains.centre: {body: pile, field: acceleration.x}"
+                                      ", every: 1 ms}\n"));
   CHECK(fails.code == 3);
   CHECK(contains(fails.err, "grains.centre: nothing has a weight"));
 }

@@ -17,7 +17,8 @@ const std::string sections =
 
 std::vector<std::filesystem::path> checkpoints(const std::string& folder) {
   std::vector<std::filesystem::path> all;
-  for (const auto& entry : std::filesystem::directory_iterator(folder + "/checkpoints")) all.push_back(entry.path());
+  for (const auto& entry : std::filesystem::directory_iterator(folder + "/checkpoints"))
+    all.push_back(entry.path());
   std::sort(all.begin(), all.end());
   return all;
 }
@@ -138,7 +139,8 @@ TEST_CASE("a case that is another computation now is refused, with what differs"
   CHECK(result.code == 2);
   CHECK(contains(result.err, "stiffness: 50 -> 60"));
   CHECK(contains(result.err, "--force"));
-  const Result forced = shoal({"resume", "changed", "--set", "physics.grains.falling.stiffness=60", "--force"});
+  const Result forced =
+      shoal({"resume", "changed", "--set", "physics.grains.falling.stiffness=60", "--force"});
   CHECK(forced.code == 0);
   CHECK(contains(forced.err, "changed since the checkpoint"));
   CHECK(contains(read("changed/case.yaml"), "stiffness: 60"));

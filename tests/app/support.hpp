@@ -34,7 +34,9 @@ inline void write(const std::filesystem::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 /// A running program; its output goes to files beside the case.
 class Process {
@@ -130,8 +132,11 @@ inline std::string grains(const std::string& more, const std::string& falling = 
          "    material: grains.matter\n"
          "    initial: {velocity: [\"0.1 + 0.2*x\", \"0.3*y\"]}\n"
          "physics:\n"
-         "  - grains.falling: {" + falling + "}\n"
-         "run: {end: " + end + "}\n" + more;
+         "  - grains.falling: {" +
+         falling +
+         "}\n"
+         "run: {end: " +
+         end + "}\n" + more;
 }
 
 }  // namespace app_test

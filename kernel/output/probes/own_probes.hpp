@@ -14,31 +14,40 @@ namespace shoal::kernel {
 enum class Reduce { maximum, minimum, sum, mean };
 
 struct ReductionParameters : Parameterised {
-  Param<std::vector<std::string>> of{"of", nullptr,
-                                     "What: an expression of fields of a particle and their parts (velocity.x, "
-                                     "velocity.magnitude), of its place x, y, z, of t and of the case's parameters. "
-                                     "Several give as many columns.",
-                                     example("0.5 * mass * velocity.magnitude^2")};
-  Param<std::vector<BodyIndex>> body{"body", nullptr, "Body or bodies whose particles count.", example("water")};
+  Param<std::vector<std::string>> of{
+      "of", nullptr,
+      "What: an expression of fields of a particle and their parts (velocity.x, "
+      "velocity.magnitude), of its place x, y, z, of t and of the case's parameters. "
+      "Several give as many columns.",
+      example("0.5 * mass * velocity.magnitude^2")};
+  Param<std::vector<BodyIndex>> body{"body", nullptr, "Body or bodies whose particles count.",
+                                     example("water")};
   Param<std::string> where{"where", nullptr, "Only particles for which this condition holds count.", optional,
                            example("position.y > 0.1")};
-  Param<std::string> unit{"unit", nullptr, "Unit of the result, for the head of the table.", optional, example("J")};
+  Param<std::string> unit{"unit", nullptr, "Unit of the result, for the head of the table.", optional,
+                          example("J")};
 };
 
 struct PointParameters : Parameterised {
-  Param<std::vector<std::string>> of{"of", nullptr,
-                                     "What: a field or its part, or an expression as for maximum. Several give as many "
-                                     "columns.",
-                                     example("velocity.magnitude")};
+  Param<std::vector<std::string>> of{
+      "of", nullptr,
+      "What: a field or its part, or an expression as for maximum. Several give as many "
+      "columns.",
+      example("velocity.magnitude")};
   Param<std::vector<BodyIndex>> body{"body", nullptr, "Body or bodies whose particles are interpolated.",
                                      example("water")};
   Param<VectorExpression> at{"at", "m", "The point; it moves if its coordinates are expressions of t.",
                              example("[5.366, 0.2]")};
-  Param<double> support{"support", "1",
-                        "Share of the smoothing kernel that particles must fill for there to be a value; with less it "
-                        "is NaN. 1 inside a body, 0.5 at a flat surface.",
-                        between(0, 1), default_to(0.05), example("0.25")};
-  Param<std::string> unit{"unit", nullptr, "Unit of the result, for the head of the table.", optional, example("m/s")};
+  Param<double> support{
+      "support",
+      "1",
+      "Share of the smoothing kernel that particles must fill for there to be a value; with less it "
+      "is NaN. 1 inside a body, 0.5 at a flat surface.",
+      between(0, 1),
+      default_to(0.05),
+      example("0.25")};
+  Param<std::string> unit{"unit", nullptr, "Unit of the result, for the head of the table.", optional,
+                          example("m/s")};
 };
 
 std::unique_ptr<Probe> make_reduction(Reduce how, const shoal_object& object, const ProbeContext& context);

@@ -17,7 +17,9 @@ namespace {
 class PluginProbe final : public Probe {
  public:
   PluginProbe(const shoal_object& object, const ProbeContext& context)
-      : name_(context.name), type_(object.type->name), plugin_(type_.substr(0, type_.find('.'))),
+      : name_(context.name),
+        type_(object.type->name),
+        plugin_(type_.substr(0, type_.find('.'))),
         api_(abi_copy(static_cast<const shoal_probe_api*>(object.type->api))) {
     call_plugin(plugin_, type_, [&] { return api_.create(&object, context.dimensions, &self_); });
     const char* const* bodies = nullptr;
@@ -40,7 +42,8 @@ class PluginProbe final : public Probe {
     const char* const* names = nullptr;
     const char* const* units = nullptr;
     const std::uint32_t n = api_.columns(self_, &names, &units);
-    for (std::uint32_t k = 0; k < n; ++k) columns_.push_back({names[k], units != nullptr && units[k] ? units[k] : ""});
+    for (std::uint32_t k = 0; k < n; ++k)
+      columns_.push_back({names[k], units != nullptr && units[k] ? units[k] : ""});
     if (columns_.empty()) throw ModelError("probe '" + name_ + "' (" + type_ + ") has no columns");
   }
 
@@ -67,7 +70,8 @@ class PluginProbe final : public Probe {
       if (std::string_view(field) != "position") found->fields.emplace_back(field);
       return;
     }
-    throw ModelError("probe '" + name_ + "' (" + type_ + ") asks for a body '" + body + "' that is not there", place);
+    throw ModelError("probe '" + name_ + "' (" + type_ + ") asks for a body '" + body + "' that is not there",
+                     place);
   }
 
   std::string name_, type_, plugin_;

@@ -40,8 +40,10 @@ std::vector<Image> images_of(const Domain& domain) {
     if (domain.periodic(axis)) {
       maps = {{1.0, domain.length(axis)}, {1.0, -domain.length(axis)}};
     } else {
-      if (domain.boundary[axis].lower == BoundaryKind::mirror) maps.emplace_back(-1.0, 2.0 * domain.lower[axis]);
-      if (domain.boundary[axis].upper == BoundaryKind::mirror) maps.emplace_back(-1.0, 2.0 * domain.upper[axis]);
+      if (domain.boundary[axis].lower == BoundaryKind::mirror)
+        maps.emplace_back(-1.0, 2.0 * domain.lower[axis]);
+      if (domain.boundary[axis].upper == BoundaryKind::mirror)
+        maps.emplace_back(-1.0, 2.0 * domain.upper[axis]);
     }
     const std::size_t n = images.size();
     for (const auto& [sign, shift] : maps) {
@@ -81,7 +83,8 @@ class Point final : public Probe {
     std::vector<FieldOfBody> all;
     for (const BodyOfProbe& body : bodies_)
       for (const ParticleExpression& expression : of_)
-        for (const std::string& field : expression.fields()) all.push_back({body.index, field, expression.place()});
+        for (const std::string& field : expression.fields())
+          all.push_back({body.index, field, expression.place()});
     return all;
   }
 
@@ -129,7 +132,8 @@ class Point final : public Probe {
   }
 
   // In the order of particles, then of images.
-  std::vector<ParticleImage> neighbours(const Simulation& run, const BodyOfProbe& body, const Place& at) const {
+  std::vector<ParticleImage> neighbours(const Simulation& run, const BodyOfProbe& body,
+                                        const Place& at) const {
     const auto* positions = static_cast<const double*>(run.field(body.index, "position").data);
     const auto dimensions = static_cast<std::size_t>(dimensions_);
     const std::uint64_t n = run.n_particles(body.index);
@@ -152,11 +156,12 @@ class Point final : public Probe {
     return all;
   }
 
-  std::vector<double> weights(const Simulation& run, const BodyOfProbe& body, const std::vector<ParticleImage>& near,
-                              const Place& at) const {
+  std::vector<double> weights(const Simulation& run, const BodyOfProbe& body,
+                              const std::vector<ParticleImage>& near, const Place& at) const {
     const auto scalar = [&](const char* name) -> const double* {
       const std::optional<FieldInfo> info = run.field_info(body.index, name);
-      return info && info->rank == SHOAL_SCALAR ? static_cast<const double*>(run.field(body.index, name).data) : nullptr;
+      return info && info->rank == SHOAL_SCALAR ? static_cast<const double*>(run.field(body.index, name).data)
+                                                : nullptr;
     };
     const double *volume = scalar("volume"), *mass = scalar("mass"), *density = scalar("density");
     const double lattice = std::pow(body.spacing, dimensions_);
@@ -175,8 +180,8 @@ class Point final : public Probe {
 
   void warn_once(double time) {
     if (!std::exchange(warned_, true))
-      log(LogLevel::warning, "probe '" + name_ + "': too few particles near its point at " + format_number(time) +
-                                 " s; its value is NaN while that is so");
+      log(LogLevel::warning, "probe '" + name_ + "': too few particles near its point at " +
+                                 format_number(time) + " s; its value is NaN while that is so");
   }
 
   std::string name_;

@@ -38,9 +38,11 @@ const std::vector<const shoal_type*>& own_probe_types() {
       own_type<PointParameters>(SHOAL_TYPE_PROBE, "point",
                                 "The value at a point, interpolated from the particles around it.", &own_api),
       own_type<MaximumParameters>(SHOAL_TYPE_PROBE, "maximum", "The largest value over particles.", &own_api),
-      own_type<MinimumParameters>(SHOAL_TYPE_PROBE, "minimum", "The smallest value over particles.", &own_api),
+      own_type<MinimumParameters>(SHOAL_TYPE_PROBE, "minimum", "The smallest value over particles.",
+                                  &own_api),
       own_type<SumParameters>(SHOAL_TYPE_PROBE, "sum",
-                              "The sum over particles, e.g. an energy, or a force on a body (of: force.x).", &own_api),
+                              "The sum over particles, e.g. an energy, or a force on a body (of: force.x).",
+                              &own_api),
       own_type<MeanParameters>(SHOAL_TYPE_PROBE, "mean", "The mean over particles.", &own_api),
   };
   return types;

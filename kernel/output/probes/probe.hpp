@@ -40,9 +40,9 @@ class Probe {
 
 /// What probes know of the case beside their own parameters.
 struct ProbeContext {
-  std::string name;              ///< of the probe
+  std::string name;  ///< of the probe
   int dimensions = 3;
-  ExpressionScope parameters;    ///< of the case, for expressions
+  ExpressionScope parameters;  ///< of the case, for expressions
   Domain domain;
   const shoal_body* bodies = nullptr;
   std::uint32_t n_bodies = 0;

@@ -38,12 +38,14 @@ double combined(Reduce how, double a, double b) {
 
 class Reduction final : public Probe {
  public:
-  Reduction(Reduce how, const shoal_object& object, const ProbeContext& context) : how_(how), name_(context.name) {
+  Reduction(Reduce how, const shoal_object& object, const ProbeContext& context)
+      : how_(how), name_(context.name) {
     parameters_.read(object, context.dimensions);
     for (const std::string& text : parameters_.of.value())
       of_.emplace_back(text, context.parameters, context.dimensions, parameters_.of.place());
     if (parameters_.where.is_set())
-      where_.emplace(parameters_.where.value(), context.parameters, context.dimensions, parameters_.where.place());
+      where_.emplace(parameters_.where.value(), context.parameters, context.dimensions,
+                     parameters_.where.place());
   }
 
   std::vector<FieldOfBody> demands() const override {
@@ -61,8 +63,9 @@ class Reduction final : public Probe {
       if (where_) where_->bind(run, body.value);
     }
     for (const ParticleExpression& expression : of_) {
-      const std::string unit = parameters_.unit.is_set() ? parameters_.unit.value()
-                                                         : expression.unit(run, parameters_.body.value()[0].value);
+      const std::string unit = parameters_.unit.is_set()
+                                   ? parameters_.unit.value()
+                                   : expression.unit(run, parameters_.body.value()[0].value);
       columns_.push_back({of_.size() == 1 ? name_ : expression.text(), unit});
     }
   }

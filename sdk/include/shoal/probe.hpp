@@ -66,7 +66,8 @@ class Probe : public Parameterised {
   template <class Derived>
   static const void* api() {
     static const shoal_probe_api table{
-        sizeof(shoal_probe_api), 0,
+        sizeof(shoal_probe_api),
+        0,
         [](const shoal_object* object, int32_t dimensions, void** self) {
           return guarded([&] {
             auto probe = std::make_unique<Derived>();

@@ -111,8 +111,9 @@ class Falling : public Physics {
       op.longest_step = longest_step;
       op.breakdown = breakdown.value_or(std::numeric_limits<double>::infinity());
     });
-    builder.attach<KineticEnergy>("grains.kinetic_energy", {SHOAL_SAMPLE, "energy"}, target, [](KineticEnergy&) {},
-                                  SHOAL_OPERATOR_ON_DEMAND);
+    builder.attach<KineticEnergy>(
+        "grains.kinetic_energy", {SHOAL_SAMPLE, "energy"}, target, [](KineticEnergy&) {},
+        SHOAL_OPERATOR_ON_DEMAND);
   }
 };
 
@@ -130,7 +131,8 @@ class Tables final : public Output {
     stream.precision(17);
     for (const shoal_snapshot_body& body : bodies_of(snapshot)) {
       stream << body.name << ' ' << snapshot.time << ' ' << body.n_particles;
-      for (const shoal_snapshot_field& field : fields_of(body)) stream << ' ' << field.name << ':' << field.components;
+      for (const shoal_snapshot_field& field : fields_of(body))
+        stream << ' ' << field.name << ':' << field.components;
       stream << '\n';
       std::this_thread::sleep_for(std::chrono::duration<double>(pause.value()));
       for (std::uint64_t i = 0; i < body.n_particles; ++i) {
@@ -143,7 +145,9 @@ class Tables final : public Output {
   }
 
  private:
-  std::filesystem::path file(std::uint64_t sequence) const { return folder_ / (std::to_string(sequence) + ".txt"); }
+  std::filesystem::path file(std::uint64_t sequence) const {
+    return folder_ / (std::to_string(sequence) + ".txt");
+  }
   Param<double> pause{"pause", "s", "Time that writing takes.", non_negative, default_to(0.0)};
   std::filesystem::path folder_;
 };

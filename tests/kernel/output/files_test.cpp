@@ -54,7 +54,8 @@ TEST_CASE("a file that is not committed leaves the previous one and nothing else
   file.commit();
   CHECK(read_whole_file(folder / "a") == "new");
   CHECK(std::distance(fs::directory_iterator(folder), {}) == 1);
-  CHECK_THROWS_WITH_AS(write_atomically(folder / "no" / "b", "x"), doctest::Contains("cannot write"), OutputError);
+  CHECK_THROWS_WITH_AS(write_atomically(folder / "no" / "b", "x"), doctest::Contains("cannot write"),
+                       OutputError);
   CHECK_THROWS_WITH_AS(read_whole_file(folder / "b"), doctest::Contains("No such file"), OutputError);
   CHECK_THROWS_AS(read_whole_file(folder), OutputError);
 }
@@ -89,7 +90,8 @@ TEST_CASE("tables of probes: every digit, units, and going on at a byte") {
   const Table table = read_table(folder / "p.csv");
   CHECK(table.names == std::vector<std::string>{"time [s]", "front [m]", "max(a, b)", "ratio"});
   CHECK(table.rows == std::vector<std::vector<double>>{{0.1, 1.0 / 3.0, -0.0, 5e-324}, {0.3, 1, 2, 3}});
-  CHECK_THROWS_WITH_AS(SeriesFile(folder / "p.csv", columns, 1000), doctest::Contains("shorter"), OutputError);
+  CHECK_THROWS_WITH_AS(SeriesFile(folder / "p.csv", columns, 1000), doctest::Contains("shorter"),
+                       OutputError);
   CHECK_THROWS_WITH_AS(SeriesFile(folder / "p.csv", {{"front", "mm"}}, bytes), doctest::Contains("columns"),
                        OutputError);
 }
@@ -117,7 +119,8 @@ TEST_CASE("the last two checkpoints are kept, newest first") {
   CheckpointStore store(folder / "c");
   CHECK(store.newest_first().empty());
   for (const std::uint64_t step : {9u, 10u, 100u, 99999u})
-    store.write(step, "head of " + std::to_string(step), [&](std::ostream& body) { body << "body of " << step; });
+    store.write(step, "head of " + std::to_string(step),
+                [&](std::ostream& body) { body << "body of " << step; });
   REQUIRE(store.newest_first().size() == 2);
   std::string header;
   CHECK(checkpoint(store, 0, &header) == "body of 99999");
@@ -157,7 +160,8 @@ TEST_CASE("folders of results: never two runs, never lost by mistake") {
   {
     ResultFolder made = ResultFolder::make("folders/a/", false);
     CHECK(made.path() == folder);
-    CHECK_THROWS_WITH_AS(ResultFolder::check_free(folder, true), doctest::Contains("another run"), FolderError);
+    CHECK_THROWS_WITH_AS(ResultFolder::check_free(folder, true), doctest::Contains("another run"),
+                         FolderError);
     made.write_case("shoal: 1\n");
     made.write_summary("{}\n");
   }
@@ -189,5 +193,6 @@ TEST_CASE("folders of results: never two runs, never lost by mistake") {
   CHECK_THROWS_AS(ResultFolder::check_free("folders/file", true), FolderError);
   fs::create_directory("folders/home");
   write("folders/home/case.yaml", "x");
-  CHECK_THROWS_WITH_AS(ResultFolder::make("folders/home", true), doctest::Contains("something else"), FolderError);
+  CHECK_THROWS_WITH_AS(ResultFolder::make("folders/home", true), doctest::Contains("something else"),
+                       FolderError);
 }

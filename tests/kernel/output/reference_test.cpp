@@ -54,8 +54,8 @@ TEST_CASE("names of measures") {
 }
 
 TEST_CASE("columns, scales and the window of a reference") {
-  ReferenceSpecification specification = against("time [ms],a,b [cm]\n0,9,0\n1000,9,200\n2000,9,400\n5000,9,77\n",
-                                                 ErrorMeasure::max);
+  ReferenceSpecification specification =
+      against("time [ms],a,b [cm]\n0,9,0\n1000,9,200\n2000,9,400\n5000,9,77\n", ErrorMeasure::max);
   specification.time_column = "time";
   specification.value_column = "b";
   specification.time_scale = 1e-3;
@@ -78,7 +78,8 @@ TEST_CASE("columns, scales and the window of a reference") {
   CHECK_THROWS_AS(check_reference(specification), OutputError);
   specification.value_column = "2";
   specification.from = 1.9;
-  CHECK_THROWS_WITH_AS(check_reference(specification), doctest::Contains("no point between the times"), OutputError);
+  CHECK_THROWS_WITH_AS(check_reference(specification), doctest::Contains("no point between the times"),
+                       OutputError);
 }
 
 TEST_CASE("what has no value is left out and counted, and nothing at all is a failure") {
@@ -161,12 +162,13 @@ TEST_CASE("what makes another computation of a case") {
       "shoal: 1\ntitle: A  # x:1\nrun: {end: 1}\nresolution: 0.1\nbodies: {a: {arrangement: cubic}}\n"
       "output: [vtk: {every: 1}]\nprobes: {p: {sum: {of: mass, body: a}, every: 1}}\n";
   const std::string now =
-      "shoal: 1\ntitle: B\nrun: {end: 2, checkpoint_every: 1}\nresolution: 0.2\nbodies: {b: {arrangement: cubic}}\n"
+      "shoal: 1\ntitle: B\nrun: {end: 2, checkpoint_every: 1}\nresolution: 0.2\nbodies: {b: {arrangement: "
+      "cubic}}\n"
       "output: []\n";
   CHECK(differing_physics(before, before).empty());
   CHECK(differences(before, before + "# a comment\n").empty());
-  CHECK(differing_physics(before, now) ==
-        std::vector<std::string>{"bodies.a.arrangement: cubic -> (none)", "resolution: 0.1 -> 0.2",
-                                 "bodies.b.arrangement: (none) -> cubic"});
+  CHECK(differing_physics(before, now) == std::vector<std::string>{"bodies.a.arrangement: cubic -> (none)",
+                                                                   "resolution: 0.1 -> 0.2",
+                                                                   "bodies.b.arrangement: (none) -> cubic"});
   CHECK(differences(before, now).size() > 5);
 }
