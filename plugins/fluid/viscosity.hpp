@@ -20,7 +20,7 @@ namespace shoal::fluid {
 template <class R, class S>
 auto no_slip_factor(const R& across, const S& signed_distance) {
   const auto depth = max(0.0, -signed_distance);
-  return min(4.0, across / max(0.25 * across, across - depth));
+  return min(4.0, across / max(0.25 * across + 1e-300, across - depth));
 }
 
 struct ViscousForce : PairOperator<ViscousForce> {
