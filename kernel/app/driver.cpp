@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <ctime>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -37,6 +38,17 @@ std::string local_time() {
 int threads_of(const Options& options) {
   return options.threads > 0 ? options.threads
                              : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+// What ParaView can open, whoever wrote it.
+std::vector<std::string> time_series(const std::filesystem::path& folder) {
+  std::vector<std::string> files;
+  std::error_code none;
+  for (const auto& output : std::filesystem::directory_iterator(folder, none))
+    for (const auto& file : std::filesystem::directory_iterator(output.path(), none))
+      if (file.path().extension() == ".pvd") files.push_back(file.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 Place option_place(const std::string& text) {
@@ -290,6 +302,8 @@ void Driver::tell_end(const Summary& result) const {
   Console::inform("\n" + timings_text(result));
   if (!result.references.empty()) Console::print(references_text(result.references));
   const std::string wall = duration_text(result.wall_seconds);
+  if (const std::vector<std::string> files = time_series(folder_.path()); !files.empty())
+    Console::inform("for ParaView: " + join(files));
   if (result.status == "finished")
     Console::inform(fmt::format("done in {}; results in {}", wall, folder));
   else
