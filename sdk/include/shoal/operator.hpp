@@ -192,7 +192,7 @@ class Accumulate final : public Field<T, true> {
 };
 
 // A number over all particles of the body, e.g. Maximum speed{}; then speed.update(i, value) in `particle`, and
-// speed.result() from `end` on.
+// speed.result() from `end` on. A NaN of any particle is the result.
 template <shoal_reduction How>
 class Reduction {
  public:
@@ -203,9 +203,9 @@ class Reduction {
     if constexpr (How == SHOAL_SUM)
       partial += value;
     else if constexpr (How == SHOAL_MINIMUM)
-      partial = value < partial ? value : partial;
+      partial = value < partial || value != value ? value : partial;
     else
-      partial = value > partial ? value : partial;
+      partial = value > partial || value != value ? value : partial;
   }
   double result() const { return result_; }
 
@@ -355,7 +355,7 @@ double time_step_of_chunk(void* self, const shoal_step* step, const shoal_chunk*
       for (std::uint64_t i = chunk->begin; i < chunk->end; ++i) {
         const double particle_limit = op.time_step_of(Particle<D>{i, nullptr});
         // A NaN must not be lost in a minimum: it stops the run.
-        if (!(particle_limit >= limit)) limit = particle_limit;
+        if (particle_limit < limit || particle_limit != particle_limit) limit = particle_limit;
       }
     };
     step->dimensions == 2 ? over_particles.template operator()<2>() : over_particles.template operator()<3>();
