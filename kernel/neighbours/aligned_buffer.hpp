@@ -43,13 +43,14 @@ class AlignedBuffer {
     if (n <= capacity_) return;
     AlignedBuffer larger;
     larger.capacity_ = std::max(n, capacity_ + capacity_ / 2);
-    larger.data_ = static_cast<T*>(::operator new(larger.capacity_ * sizeof(T), std::align_val_t{alignment}));
+    larger.data_ =
+        static_cast<T*>(::operator new (larger.capacity_ * sizeof(T), std::align_val_t{alignment}));
     if (keep > 0) std::memcpy(larger.data_, data_, keep * sizeof(T));
     swap(larger);
   }
 
   void release() {
-    ::operator delete(data_, std::align_val_t{alignment});
+    ::operator delete (data_, std::align_val_t{alignment});
     data_ = nullptr;
     capacity_ = 0;
   }

@@ -46,8 +46,9 @@ void AxisMap::set_compressed(const double* coordinates, std::size_t n, std::size
 
 double AxisMap::locate_in_segments(double x) const {
   const double s = x * per_width_;
-  auto next = std::upper_bound(segments_.begin(), segments_.end(), s,
-                               [](double value, const Segment& segment) { return value < segment.first - 1.0; });
+  auto next =
+      std::upper_bound(segments_.begin(), segments_.end(), s,
+                       [](double value, const Segment& segment) { return value < segment.first - 1.0; });
   // `next` is the first segment that begins more than one slice above s.
   if (next == segments_.begin()) return -far;
   const Segment& segment = *std::prev(next);

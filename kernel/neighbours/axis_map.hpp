@@ -22,7 +22,8 @@ class AxisMap {
   /// All slices from `lower` to `upper`.
   void set_uniform(double lower, double upper, double width, int divisions);
   /// Only the slices around the given coordinates, which stand `stride` numbers apart. Sorts: O(n log n).
-  void set_compressed(const double* coordinates, std::size_t n, std::size_t stride, double width, int divisions);
+  void set_compressed(const double* coordinates, std::size_t n, std::size_t stride, double width,
+                      int divisions);
 
   /// Number of cells.
   std::int64_t cells() const { return cells_; }

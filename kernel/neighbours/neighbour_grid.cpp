@@ -19,6 +19,7 @@ namespace {
 // Up to this many cells per particle (and a few more) the plain box is divided; beyond, empty space is cut out.
 constexpr double cells_per_particle = 8.0;
 constexpr double cells_at_least = 4096.0;
+constexpr double most_cells = 0x1p31 - 64.0;  // cell numbers have 32 bits, with sign where vectors are used
 
 constexpr std::size_t sort_chunk = 16384;
 constexpr std::size_t sort_buckets = 256;
@@ -74,7 +75,8 @@ void NeighbourGrid::build_in(Positions positions) {
   // Whole vectors are read at the end of a run; what they read there must be numbers, and no index out of range.
   for (std::size_t k = n_; k < n_ + slack; ++k) order_[k] = 0;
   for (int a = 0; a < D; ++a)
-    for (std::size_t k = n_valid(); k < n_ + slack; ++k) sorted_[a][k] = std::numeric_limits<double>::infinity();
+    for (std::size_t k = n_valid(); k < n_ + slack; ++k)
+      sorted_[a][k] = std::numeric_limits<double>::infinity();
 }
 
 template <int D>
@@ -121,15 +123,14 @@ void NeighbourGrid::find_bounds(Positions positions) {
 
 void NeighbourGrid::choose_axes() {
   for (int a = 0; a < 3; ++a) axis_[a] = a;
-  std::stable_sort(axis_, axis_ + dimensions_, [&](int a, int b) {
-    return upper_[a] - lower_[a] < upper_[b] - lower_[b];
-  });
+  std::stable_sort(axis_, axis_ + dimensions_,
+                   [&](int a, int b) { return upper_[a] - lower_[a] < upper_[b] - lower_[b]; });
 }
 
 bool NeighbourGrid::fits() const {
   double cells = 1.0;
   for (int rank = 0; rank < dimensions_; ++rank) cells *= static_cast<double>(map_[rank].cells());
-  return cells <= cells_at_least + cells_per_particle * static_cast<double>(n_);
+  return cells <= std::min(most_cells, cells_at_least + cells_per_particle * static_cast<double>(n_));
 }
 
 void NeighbourGrid::choose_cells(Positions positions) {
@@ -175,7 +176,8 @@ template <int D>
 inline std::uint32_t NeighbourGrid::cell_of(const double* x) const {
   bool valid = true;
   for (int a = 0; a < D; ++a) valid &= is_valid(x[a]);
-  if (!valid) return static_cast<std::uint32_t>(n_cells_);  // one cell behind the others, which no search visits
+  if (!valid)
+    return static_cast<std::uint32_t>(n_cells_);  // one cell behind the others, which no search visits
   std::int64_t c = map_[D - 1].cell(x[axis_[D - 1]]);
   for (int rank = D - 2; rank >= 0; --rank) c = c * map_[rank].cells() + map_[rank].cell(x[axis_[rank]]);
   return static_cast<std::uint32_t>(c);
@@ -213,7 +215,8 @@ void NeighbourGrid::sort_serial(Positions positions) {
 template <int D>
 void NeighbourGrid::sort_parallel(Positions positions) {
   const std::uint64_t all_cells = n_cells_ + 1;
-  int shift = 0;  // cells of a bucket as a power of two: a division per particle would cost more than the sort
+  int shift =
+      0;  // cells of a bucket as a power of two: a division per particle would cost more than the sort
   while ((all_cells - 1) >> shift >= sort_buckets) ++shift;
   const std::size_t n_chunks = (n_ + sort_chunk - 1) / sort_chunk;
   scratch_.reserve(n_);
@@ -251,7 +254,8 @@ void NeighbourGrid::sort_parallel(Positions positions) {
     const std::uint64_t last = std::min<std::uint64_t>(all_cells, (bucket + 1) << shift);
     std::uint32_t* start = cell_start_.data() + 1;  // as in sort_serial, of the cells of this bucket
     std::fill(start + first, start + last, 0u);
-    for (std::uint32_t k = bucket_start[bucket]; k < bucket_start[bucket + 1]; ++k) ++start[cell_[scratch_[k]]];
+    for (std::uint32_t k = bucket_start[bucket]; k < bucket_start[bucket + 1]; ++k)
+      ++start[cell_[scratch_[k]]];
     std::uint32_t place_of_next = bucket_start[bucket];
     for (std::uint64_t c = first; c < last; ++c) place_of_next += std::exchange(start[c], place_of_next);
     for (std::uint32_t k = bucket_start[bucket]; k < bucket_start[bucket + 1]; ++k) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "kernel/neighbours/row_scan.hpp"
+#include "kernel/neighbours/run_finder.hpp"
 #include "kernel/neighbours/threads.hpp"
 
 namespace shoal::kernel {
@@ -40,72 +41,6 @@ struct RowWriter {
   }
 };
 
-struct Run {
-  std::uint32_t begin, end;
-};
-
-// Finds the runs of sorted particles that may hold neighbours of a place.
-template <int D>
-class RunFinder {
- public:
-  // A slow axis is cut into cells no narrower than the cut-off; with rounding, a place sees at most 4 of them.
-  static constexpr std::size_t max_runs = D == 2 ? 4 : 16;
-
-  RunFinder(const NeighbourGrid& grid, double cutoff)
-      : grid_(grid), start_(grid.cell_start()), margin_(grid.rounding()), reach_(cutoff + grid.rounding()) {}
-
-  /// Fills `runs` and returns their number. The margin covers the rounding of positions and cell numbers.
-  std::size_t find(const double* x, std::array<Run, max_runs>& runs) const {
-    const double fast = grid_.map(0).locate(x[grid_.axis(0)]);
-    const double left = reach_ * reach_;
-    std::size_t n = 0;
-    if constexpr (D == 2) {
-      for_rows(1, x, left, [&](std::int64_t row, double rest) { add(fast, row, rest, runs, n); });
-    } else {
-      const std::int64_t rows = grid_.map(1).cells();
-      for_rows(2, x, left, [&](std::int64_t slab, double rest_of_slab) {
-        for_rows(1, x, rest_of_slab, [&](std::int64_t row, double rest) {
-          add(fast, slab * rows + row, rest, runs, n);
-        });
-      });
-    }
-    return n;
-  }
-
- private:
-  // visit(cell, rest) for the cells of a slow axis within reach; `rest` is the squared reach left beside them.
-  template <class Visit>
-  void for_rows(int rank, const double* x, double left, const Visit& visit) const {
-    const AxisMap& map = grid_.map(rank);
-    const double u = map.locate(x[grid_.axis(rank)]);
-    const double reach = reach_ * map.per_cell();
-    const auto first = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(u - reach)));
-    const auto last = std::min(map.cells() - 1, static_cast<std::int64_t>(std::floor(u + reach)));
-    for (std::int64_t cell = first; cell <= last; ++cell) {
-      const auto c = static_cast<double>(cell);
-      const double gap = std::max(0.0, std::max(c - u, u - (c + 1.0)) * map.cell_width() - margin_);
-      const double rest = left - gap * gap;
-      if (rest > 0.0) visit(cell, rest);
-    }
-  }
-
-  void add(double fast, std::int64_t row, double rest, std::array<Run, max_runs>& runs, std::size_t& n) const {
-    const AxisMap& map = grid_.map(0);
-    const double half = (std::sqrt(rest) + margin_) * map.per_cell();
-    const auto first = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(fast - half)));
-    const auto last = std::min(map.cells() - 1, static_cast<std::int64_t>(std::floor(fast + half)));
-    if (first > last) return;
-    const std::uint32_t* cells = start_ + row * map.cells();
-    const Run run{cells[first], cells[last + 1]};
-    runs[n] = run;
-    n += run.begin < run.end;
-  }
-
-  const NeighbourGrid& grid_;
-  const std::uint32_t* start_;
-  double margin_, reach_;
-};
-
 }  // namespace
 
 // What one task of the parallel build works on.
@@ -119,8 +54,7 @@ struct NeighbourList::Block {
 bool is_available(ScanPath path) {
   switch (path) {
     case ScanPath::fastest:
-    case ScanPath::plain:
-      return true;
+    case ScanPath::plain: return true;
     case ScanPath::avx2:
 #if defined(__AVX2__)
       return true;
@@ -156,20 +90,15 @@ void NeighbourList::build(const NeighbourGrid& sources, Positions targets, doubl
       build_rows<3, Scan>(sources, targets, same_body);
   };
   switch (path) {
-    case ScanPath::plain:
-      return with(PlainScan{});
+    case ScanPath::plain: return with(PlainScan{});
 #if defined(__AVX2__)
-    case ScanPath::avx2:
-      return with(Avx2Scan{});
+    case ScanPath::avx2: return with(Avx2Scan{});
 #endif
-    case ScanPath::fastest:
-      return with(FastestScan{});
+    case ScanPath::fastest: return with(FastestScan{});
 #if defined(__AVX512F__) && defined(__AVX512VL__)
-    case ScanPath::avx512:
-      return with(Avx512Scan{});
+    case ScanPath::avx512: return with(Avx512Scan{});
 #endif
-    default:
-      throw std::invalid_argument("this program was not compiled for the instructions asked for");
+    default: throw std::invalid_argument("this program was not compiled for the instructions asked for");
   }
 }
 
@@ -182,7 +111,7 @@ void NeighbourList::build_rows(const NeighbourGrid& sources, Positions targets, 
     target.squared_radius = cutoff_ * cutoff_;
     target.order = sources.order();
     for (int a = 0; a < D; ++a) target.sorted[a] = sources.sorted(a);
-    std::array<Run, RunFinder<D>::max_runs> runs;
+    std::array<Run, RunFinder<D>::max_runs> runs{};
     std::uint64_t pairs = 0;
     for (std::size_t i = first; i < last; ++i) {
       bool finite = true;
@@ -195,8 +124,7 @@ void NeighbourList::build_rows(const NeighbourGrid& sources, Positions targets, 
       std::size_t candidates = 0;
       for (std::size_t k = 0; k < n_runs; ++k) candidates += runs[k].end - runs[k].begin;
       std::uint32_t* const row = writer.room_for(candidates);
-      std::uint32_t* out = row;
-      for (std::size_t k = 0; k < n_runs; ++k) out = Scan::template run<D>(target, runs[k].begin, runs[k].end, out);
+      const std::uint32_t* const out = scan_runs<D, Scan>(target, runs.data(), n_runs, row);
       const auto count = static_cast<std::size_t>(out - row);
       offsets_[i] = writer.used;
       counts_[i] = static_cast<std::uint32_t>(count);

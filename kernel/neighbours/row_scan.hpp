@@ -1,14 +1,17 @@
 // SPDX-FileCopyrightText: The Shoal authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The inner loop of neighbour search: of the sorted particles begin ... end-1 of a row, write those nearer than the
-// radius. Included by neighbour_list.cpp only.
+// The inner loop of neighbour search: of runs of sorted particles, write those nearer than the radius. Included by
+// neighbour_list.cpp only.
 //
-// Nine in ten candidates fail or pass unpredictably, so no path branches on the result; a branching loop is ten
-// times slower (27 against 2.6 ns per neighbour). All paths give the same neighbours in the same order.
+// Two thirds of the candidates fail, unpredictably, so no path branches on the result; a branching loop is ten times
+// slower. Neither do the SIMD paths branch on the end of a run: runs are cut into steps of one vector first, and one
+// loop goes over the steps of all of them. All paths give the same neighbours in the same order.
 #pragma once
 
+#include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 #if defined(__AVX2__)
@@ -16,6 +19,11 @@
 #endif
 
 namespace shoal::kernel {
+
+/// Sorted particles begin ... end-1.
+struct Run {
+  std::uint32_t begin, end;
+};
 
 /// Of whom neighbours are sought, and among whom. Arrays hold D coordinates; `self` is the particle to leave out.
 template <int D>
@@ -27,13 +35,16 @@ struct RowTarget {
   const std::uint32_t* order;
 };
 
-/// Paths write up to this many entries beyond the last neighbour and read as many beyond `end`.
+/// Paths write up to this many entries beyond the last neighbour and read as many beyond the end of a run.
 inline constexpr std::size_t scan_overrun = 8;
 
+/// One candidate at a time.
 struct PlainScan {
+  static constexpr std::uint32_t width = 1;
+
   template <int D>
-  static std::uint32_t* run(const RowTarget<D>& t, std::uint32_t begin, std::uint32_t end, std::uint32_t* out) {
-    for (std::uint32_t k = begin; k < end; ++k) {
+  static std::uint32_t* scan(const RowTarget<D>& t, Run run, std::uint32_t* out) {
+    for (std::uint32_t k = run.begin; k < run.end; ++k) {
       double r2 = 0.0;
       for (int a = 0; a < D; ++a) {
         const double d = t.sorted[a][k] - t.x[a];
@@ -65,28 +76,37 @@ struct CompressTable {
 };
 inline constexpr CompressTable compress_table{};
 
+/// Steps of four candidates; step s holds those at begin[s] ... begin[s] + left[s] - 1.
 struct Avx2Scan {
+  static constexpr std::uint32_t width = 4;
+
   template <int D>
-  static std::uint32_t* run(const RowTarget<D>& t, std::uint32_t begin, std::uint32_t end, std::uint32_t* out) {
+  static std::uint32_t* scan(const RowTarget<D>& t, const std::uint32_t* begin, const std::uint32_t* left,
+                             std::size_t steps, std::uint32_t* out) {
     const __m256d radius2 = _mm256_set1_pd(t.squared_radius);
     const __m128i self = _mm_set1_epi32(static_cast<int>(t.self));
     __m256d x[D];
-    for (int a = 0; a < D; ++a) x[a] = _mm256_set1_pd(t.x[a]);
-    for (std::uint32_t k = begin; k < end; k += 4) {
+    const double* sorted[D];  // copies: stores to `out` could otherwise change the originals
+    const std::uint32_t* const order = t.order;
+    for (int a = 0; a < D; ++a) {
+      x[a] = _mm256_set1_pd(t.x[a]);
+      sorted[a] = t.sorted[a];
+    }
+    for (std::size_t s = 0; s < steps; ++s) {
+      const std::size_t k = begin[s];
       __m256d r2 = _mm256_setzero_pd();
       for (int a = 0; a < D; ++a) {
-        const __m256d d = _mm256_sub_pd(_mm256_loadu_pd(t.sorted[a] + k), x[a]);
+        const __m256d d = _mm256_sub_pd(_mm256_loadu_pd(sorted[a] + k), x[a]);
         r2 = _mm256_add_pd(r2, _mm256_mul_pd(d, d));
       }
-      const __m128i index = _mm_loadu_si128(reinterpret_cast<const __m128i*>(t.order + k));
-      const int near = _mm256_movemask_pd(_mm256_cmp_pd(r2, radius2, _CMP_LT_OQ));
-      const int same = _mm_movemask_ps(_mm_castsi128_ps(_mm_cmpeq_epi32(index, self)));
-      const std::uint32_t left = end - k;
-      const int inside = left >= 4 ? 15 : (1 << left) - 1;
-      const int hit = near & inside & ~same;
+      const __m128i index = _mm_loadu_si128(reinterpret_cast<const __m128i*>(order + k));
+      const auto near = static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(r2, radius2, _CMP_LT_OQ)));
+      const auto same =
+          static_cast<unsigned>(_mm_movemask_ps(_mm_castsi128_ps(_mm_cmpeq_epi32(index, self))));
+      const unsigned hit = _bzhi_u32(near & ~same, left[s]);
       const __m128i shuffle = _mm_load_si128(reinterpret_cast<const __m128i*>(compress_table.bytes[hit]));
       _mm_storeu_si128(reinterpret_cast<__m128i*>(out), _mm_shuffle_epi8(index, shuffle));
-      out += std::popcount(static_cast<unsigned>(hit));
+      out += std::popcount(hit);
     }
     return out;
   }
@@ -94,25 +114,34 @@ struct Avx2Scan {
 #endif
 
 #if defined(__AVX512F__) && defined(__AVX512VL__)
+/// Steps of eight candidates.
 struct Avx512Scan {
+  static constexpr std::uint32_t width = 8;
+
   template <int D>
-  static std::uint32_t* run(const RowTarget<D>& t, std::uint32_t begin, std::uint32_t end, std::uint32_t* out) {
+  static std::uint32_t* scan(const RowTarget<D>& t, const std::uint32_t* begin, const std::uint32_t* left,
+                             std::size_t steps, std::uint32_t* out) {
     const __m512d radius2 = _mm512_set1_pd(t.squared_radius);
     const __m256i self = _mm256_set1_epi32(static_cast<int>(t.self));
     __m512d x[D];
-    for (int a = 0; a < D; ++a) x[a] = _mm512_set1_pd(t.x[a]);
-    for (std::uint32_t k = begin; k < end; k += 8) {
+    const double* sorted[D];  // copies: stores to `out` could otherwise change the originals
+    const std::uint32_t* const order = t.order;
+    for (int a = 0; a < D; ++a) {
+      x[a] = _mm512_set1_pd(t.x[a]);
+      sorted[a] = t.sorted[a];
+    }
+    for (std::size_t s = 0; s < steps; ++s) {
+      const std::size_t k = begin[s];
       __m512d r2 = _mm512_setzero_pd();
       for (int a = 0; a < D; ++a) {
-        const __m512d d = _mm512_sub_pd(_mm512_loadu_pd(t.sorted[a] + k), x[a]);
+        const __m512d d = _mm512_sub_pd(_mm512_loadu_pd(sorted[a] + k), x[a]);
         r2 = _mm512_add_pd(r2, _mm512_mul_pd(d, d));
       }
-      const __m256i index = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(t.order + k));
-      const std::uint32_t left = end - k;
-      const auto inside = static_cast<__mmask8>(left >= 8 ? 0xFFu : (1u << left) - 1u);
+      const __m256i index = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(order + k));
+      const auto inside = static_cast<__mmask8>(_bzhi_u32(0xFFu, left[s]));
       const __mmask8 near = _mm512_mask_cmp_pd_mask(inside, r2, radius2, _CMP_LT_OQ);
       const __mmask8 hit = _mm256_mask_cmpneq_epi32_mask(near, index, self);
-      // Compressing in a register and storing all of it is faster than a compressing store on every CPU.
+      // Compressing in a register and storing all of it is faster than a compressing store.
       _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_maskz_compress_epi32(hit, index));
       out += std::popcount(static_cast<unsigned>(hit));
     }
@@ -125,5 +154,65 @@ using FastestScan = Avx2Scan;
 #else
 using FastestScan = PlainScan;
 #endif
+
+#if defined(__AVX2__)
+/// Runs cut into steps of Width candidates, up to `at_once` of them without a branch: most runs have fewer.
+template <std::uint32_t Width>
+class StepList {
+ public:
+  static constexpr std::uint32_t at_once = 8;
+  static constexpr std::size_t capacity = 256;
+
+  /// Adds the steps of at most at_once * Width candidates.
+  void add(std::uint32_t first, std::uint32_t length) {
+    const __m256i ahead =
+        _mm256_mullo_epi32(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7), _mm256_set1_epi32(Width));
+    const __m256i place = _mm256_add_epi32(_mm256_set1_epi32(static_cast<int>(first)), ahead);
+    const __m256i rest = _mm256_sub_epi32(_mm256_set1_epi32(static_cast<int>(length)), ahead);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(begin_ + n_), place);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(left_ + n_), rest);
+    n_ += (length + Width - 1) / Width;
+  }
+  bool is_full() const { return n_ > capacity - at_once; }
+  void clear() { n_ = 0; }
+
+  const std::uint32_t* begin() const { return begin_; }
+  /// Candidates left in the run at each step; at most 64, since bzhi looks at 8 bits.
+  const std::uint32_t* left() const { return left_; }
+  std::size_t size() const { return n_; }
+
+ private:
+  std::uint32_t begin_[capacity], left_[capacity];
+  std::size_t n_ = 0;
+};
+#endif
+
+/// Scans all runs; the neighbours stand at `out` up to the returned end.
+template <int D, class Scan>
+std::uint32_t* scan_runs(const RowTarget<D>& target, const Run* runs, std::size_t n_runs,
+                         std::uint32_t* out) {
+  if constexpr (Scan::width == 1) {
+    for (std::size_t r = 0; r < n_runs; ++r) out = Scan::scan(target, runs[r], out);
+  } else {
+#if defined(__AVX2__)
+    StepList<Scan::width> steps;
+    constexpr std::uint32_t part = steps.at_once * Scan::width;
+    for (std::size_t r = 0; r < n_runs; ++r) {
+      std::uint32_t first = runs[r].begin, length = runs[r].end - runs[r].begin;
+      for (; length > part || steps.is_full();
+           first += std::min(part, length), length -= std::min(part, length)) {
+        if (steps.is_full()) {
+          out = Scan::scan(target, steps.begin(), steps.left(), steps.size(), out);
+          steps.clear();
+        }
+        steps.add(first, std::min(part, length));
+      }
+      steps.add(first, length);
+    }
+    out = Scan::scan(target, steps.begin(), steps.left(), steps.size(), out);
+#endif
+  }
+  return out;
+}
 
 }  // namespace shoal::kernel

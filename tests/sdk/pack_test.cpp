@@ -26,9 +26,19 @@ bool same_bits(double a, double b) {
 
 std::vector<double> awkward_numbers() {
   const double inf = std::numeric_limits<double>::infinity();
-  std::vector<double> x = {0.0, -0.0, 1.0,  -1.0,  0.5, -3.25, 1e300, -1e-300, inf, -inf,
+  std::vector<double> x = {0.0,
+                           -0.0,
+                           1.0,
+                           -1.0,
+                           0.5,
+                           -3.25,
+                           1e300,
+                           -1e-300,
+                           inf,
+                           -inf,
                            std::numeric_limits<double>::quiet_NaN(),
-                           std::numeric_limits<double>::denorm_min(), 2.0};
+                           std::numeric_limits<double>::denorm_min(),
+                           2.0};
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform(-10, 10);
   while (x.size() < 29) x.push_back(uniform(random));

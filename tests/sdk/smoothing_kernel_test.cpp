@@ -49,7 +49,8 @@ double integrate_ball(const Kernel& kernel, F&& f) {
   double sum = 0;
   const double h = kernel.h();
   for (int piece = 0; piece < std::lround(Kernel::support); ++piece)
-    sum += integrate([&](double r) { return sphere * std::pow(r, D - 1) * f(r); }, piece * h, (piece + 1) * h);
+    sum +=
+        integrate([&](double r) { return sphere * std::pow(r, D - 1) * f(r); }, piece * h, (piece + 1) * h);
   return sum;
 }
 
@@ -82,7 +83,8 @@ TEST_CASE("the first moment of the gradient is minus the identity") {
   for_all_dimensions([](auto kernel, auto, auto d) {
     const double moment = integrate_ball<d()>(kernel, [&](double r) { return kernel.dw(r) * r; }) / d();
     CHECK(std::abs(moment + 1) < 1e-12);
-    const double by_ratio = integrate_ball<d()>(kernel, [&](double r) { return kernel.dw_over_r(r) * r * r; }) / d();
+    const double by_ratio =
+        integrate_ball<d()>(kernel, [&](double r) { return kernel.dw_over_r(r) * r * r; }) / d();
     CHECK(std::abs(by_ratio + 1) < 1e-12);
   });
 }
@@ -90,7 +92,8 @@ TEST_CASE("the first moment of the gradient is minus the identity") {
 TEST_CASE("the Laguerre-Gauss kernel has no second moment, the others have") {
   for_all_dimensions([](auto kernel, auto kind, auto d) {
     const double h = kernel.h();
-    const double second = integrate_ball<d()>(kernel, [&](double r) { return kernel.w(r) * r * r / (h * h); });
+    const double second =
+        integrate_ball<d()>(kernel, [&](double r) { return kernel.w(r) * r * r / (h * h); });
     if (kind == SmoothingKernel::laguerre_gauss)
       CHECK(std::abs(second) < 1e-12);
     else
@@ -119,7 +122,8 @@ TEST_CASE("a smoothing kernel is continuous at the cut-off and exactly zero beyo
     CHECK(radius == shoal::cutoff_radius(kind, kernel.h()));
     CHECK(std::abs(kernel.w(radius * (1 - 1e-9))) < 1e-8 * w0);
     // only the cut Gaussian has a step in its slope: 0.037 of W(0)/h in 2D, 0.030 in 3D
-    CHECK(std::abs(kernel.dw(radius * (1 - 1e-9))) < (kind == SmoothingKernel::laguerre_gauss ? 0.05 : 1e-8) * scale);
+    CHECK(std::abs(kernel.dw(radius * (1 - 1e-9))) <
+          (kind == SmoothingKernel::laguerre_gauss ? 0.05 : 1e-8) * scale);
     for (double factor : {1.0 + 1e-12, 1.5, 1e3, 1e12}) {
       CHECK(kernel.w(factor * radius) == 0.0);
       CHECK(kernel.dw(factor * radius) == 0.0);
@@ -163,7 +167,8 @@ TEST_CASE("kernels of packs equal kernels of doubles") {
     for (double q = 0.0; q < kernel.support + 0.2; q += 0.01) {
       double r[lanes];
       for (int k = 0; k < lanes; ++k) r[k] = h * (q + 0.0013 * k);
-      const Pack w = kernel.w(Pack::load(r)), dw = kernel.dw(Pack::load(r)), ratio = kernel.dw_over_r(Pack::load(r));
+      const Pack w = kernel.w(Pack::load(r)), dw = kernel.dw(Pack::load(r)),
+                 ratio = kernel.dw_over_r(Pack::load(r));
       for (int k = 0; k < lanes; ++k) {
         worst_w = std::max(worst_w, std::abs(w[k] - kernel.w(r[k])) / w0);
         worst_dw = std::max(worst_dw, std::abs(dw[k] - kernel.dw(r[k])) * h / w0);

@@ -214,7 +214,9 @@ struct RealTraits<Pack> {
 
 /// double or Pack.
 template <class R>
-concept Real = requires { RealTraits<R>::lanes; };
+concept Real = requires {
+  RealTraits<R>::lanes;
+};
 
 }  // namespace SHOAL_ISA_NAMESPACE
 }  // namespace shoal

@@ -268,7 +268,14 @@ class LaguerreGauss {
   double h_, per_h_, a_, b_, c_, dw_factor_;
 };
 
-enum class SmoothingKernel { wendland_c2, wendland_c4, cubic_spline, quintic_spline, hyperbolic, laguerre_gauss };
+enum class SmoothingKernel {
+  wendland_c2,
+  wendland_c4,
+  cubic_spline,
+  quintic_spline,
+  hyperbolic,
+  laguerre_gauss
+};
 
 /// The names by which a case chooses, in the order of the enumeration.
 inline constexpr std::array<std::string_view, 6> smoothing_kernel_names = {
@@ -290,18 +297,12 @@ constexpr std::string_view to_string(SmoothingKernel kind) {
 template <int D, class F>
 decltype(auto) with_kernel(SmoothingKernel kind, double h, F&& f) {
   switch (kind) {
-    case SmoothingKernel::wendland_c4:
-      return std::forward<F>(f)(WendlandC4<D>(h));
-    case SmoothingKernel::cubic_spline:
-      return std::forward<F>(f)(CubicSpline<D>(h));
-    case SmoothingKernel::quintic_spline:
-      return std::forward<F>(f)(QuinticSpline<D>(h));
-    case SmoothingKernel::hyperbolic:
-      return std::forward<F>(f)(Hyperbolic<D>(h));
-    case SmoothingKernel::laguerre_gauss:
-      return std::forward<F>(f)(LaguerreGauss<D>(h));
-    case SmoothingKernel::wendland_c2:
-      break;
+    case SmoothingKernel::wendland_c4: return std::forward<F>(f)(WendlandC4<D>(h));
+    case SmoothingKernel::cubic_spline: return std::forward<F>(f)(CubicSpline<D>(h));
+    case SmoothingKernel::quintic_spline: return std::forward<F>(f)(QuinticSpline<D>(h));
+    case SmoothingKernel::hyperbolic: return std::forward<F>(f)(Hyperbolic<D>(h));
+    case SmoothingKernel::laguerre_gauss: return std::forward<F>(f)(LaguerreGauss<D>(h));
+    case SmoothingKernel::wendland_c2: break;
   }
   return std::forward<F>(f)(WendlandC2<D>(h));
 }

@@ -36,7 +36,8 @@ void check_sort(const Cloud& cloud, double cutoff) {
       std::uint64_t rest = c;
       for (int rank = 0; rank < cloud.dimensions; ++rank) {
         const auto cells = static_cast<std::uint64_t>(grid.map(rank).cells());
-        errors += grid.map(rank).cell(grid.sorted(grid.axis(rank))[k]) != static_cast<std::int64_t>(rest % cells);
+        errors +=
+            grid.map(rank).cell(grid.sorted(grid.axis(rank))[k]) != static_cast<std::int64_t>(rest % cells);
         rest /= cells;
       }
       if (k > grid.cell_start()[c]) errors += grid.order()[k] < grid.order()[k - 1];  // stable

@@ -21,8 +21,8 @@ namespace {
 constexpr ScanPath all_paths[] = {ScanPath::fastest, ScanPath::plain, ScanPath::avx2, ScanPath::avx512};
 
 // Builds with every path; all must equal the brute-force rows, and each other in order.
-void check_list(const Cloud& targets, std::size_t n_targets, const Cloud& sources, double cutoff, bool same_body,
-                double grid_cutoff = 0.0) {
+void check_list(const Cloud& targets, std::size_t n_targets, const Cloud& sources, double cutoff,
+                bool same_body, double grid_cutoff = 0.0) {
   const auto expected = all_pairs(targets, n_targets, sources, cutoff, same_body);
   NeighbourGrid grid;
   grid.build(sources.positions(), grid_cutoff > 0.0 ? grid_cutoff : cutoff);
@@ -208,7 +208,8 @@ TEST_CASE("gaps between clusters, with targets of another body inside and beside
 TEST_CASE("positions that are not finite are reported and left out") {
   for (int d : {2, 3}) {
     Cloud cloud = random_cloud(d, 500, 0.0, 1.0, 19);
-    const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 inf = std::numeric_limits<double>::infinity();
     const auto at = [&](std::size_t i, int a) -> double& {
       return cloud.x[i * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)];
     };
@@ -224,7 +225,7 @@ TEST_CASE("positions that are not finite are reported and left out") {
     CHECK(grid.n_valid() == 496);
     NeighbourList list;
     list.build(grid, cloud.positions(), 0.2, true);
-    for (std::size_t i : {123, 124, 499, 300}) CHECK(list.counts()[i] == 0);
+    for (std::size_t i : {123u, 124u, 499u, 300u}) CHECK(list.counts()[i] == 0);
     check_self(cloud, 0.2);
   }
   Cloud none{2, std::vector<double>(20, std::numeric_limits<double>::quiet_NaN())};
@@ -241,7 +242,7 @@ TEST_CASE("one thread and two give the same list") {
     cloud.x[5] = std::numeric_limits<double>::quiet_NaN();
     NeighbourGrid grids[2];
     NeighbourList lists[2];
-    for (std::size_t k : {0, 1}) {
+    for (std::size_t k : {0u, 1u}) {
       const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, k + 1);
       // A second build reuses the memory of the first, and must not see it.
       for (int repeat = 0; repeat < 2; ++repeat) {
@@ -251,7 +252,8 @@ TEST_CASE("one thread and two give the same list") {
     }
     REQUIRE(grids[0].n_cells() == grids[1].n_cells());
     CHECK(std::equal(grids[0].order(), grids[0].order() + grids[0].n(), grids[1].order()));
-    CHECK(std::equal(grids[0].cell_start(), grids[0].cell_start() + grids[0].n_cells() + 1, grids[1].cell_start()));
+    CHECK(std::equal(grids[0].cell_start(), grids[0].cell_start() + grids[0].n_cells() + 1,
+                     grids[1].cell_start()));
     for (int a = 0; a < d; ++a)
       CHECK(std::equal(grids[0].sorted(a), grids[0].sorted(a) + grids[0].n_valid(), grids[1].sorted(a)));
     const auto n = cloud.size();
@@ -296,7 +298,8 @@ TEST_CASE("arguments that make no sense are refused") {
   const Cloud cloud = random_cloud(3, 10, 0.0, 1.0, 23), flat = random_cloud(2, 10, 0.0, 1.0, 23);
   NeighbourGrid grid;
   CHECK_THROWS_AS(grid.build(cloud.positions(), 0.0), std::invalid_argument);
-  CHECK_THROWS_AS(grid.build(cloud.positions(), std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
+  CHECK_THROWS_AS(grid.build(cloud.positions(), std::numeric_limits<double>::quiet_NaN()),
+                  std::invalid_argument);
   grid.build(cloud.positions(), 0.5);
   NeighbourList list;
   CHECK_THROWS_AS(list.build(grid, cloud.positions(), 0.6, true), std::invalid_argument);

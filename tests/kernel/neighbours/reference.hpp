@@ -48,7 +48,8 @@ inline Cloud jittered_lattice(int dimensions, int m, double spacing, double jitt
 
 /// For each target the sources nearer than the cut-off, in ascending order, by trying all pairs.
 inline std::vector<std::vector<std::uint32_t>> all_pairs(const Cloud& targets, std::size_t n_targets,
-                                                         const Cloud& sources, double cutoff, bool same_body) {
+                                                         const Cloud& sources, double cutoff,
+                                                         bool same_body) {
   const auto d = static_cast<std::size_t>(targets.dimensions);
   std::vector<std::vector<std::uint32_t>> rows(n_targets);
   for (std::size_t i = 0; i < n_targets; ++i)
@@ -91,7 +92,8 @@ inline int layout_errors(const NeighbourList& list) {
     errors += begin != end;
     end = begin + padded;
     pairs += count;
-    for (std::uint64_t k = begin + count; k < end; ++k) errors += list.indices()[k] != list.indices()[begin + count - 1];
+    for (std::uint64_t k = begin + count; k < end; ++k)
+      errors += list.indices()[k] != list.indices()[begin + count - 1];
   }
   errors += list.offsets()[list.n_rows()] != end;
   errors += list.n_pairs() != pairs;

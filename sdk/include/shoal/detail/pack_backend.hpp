@@ -71,8 +71,7 @@ inline std::uint32_t get_index(RawIndex a, int k) {
 }
 template <int Stride>
 inline Raw gather(const double* base, RawIndex index) {
-  const __m256i scaled =
-      Stride == 1 ? index : _mm256_mullo_epi32(index, _mm256_set1_epi32(Stride));
+  const __m256i scaled = Stride == 1 ? index : _mm256_mullo_epi32(index, _mm256_set1_epi32(Stride));
   return _mm512_mask_i32gather_pd(_mm512_setzero_pd(), full_mask, scaled, base, 8);
 }
 
@@ -164,9 +163,7 @@ inline Raw load(const double* p) { return {{Double2{p[0], p[1]}, Double2{p[2], p
 inline void store(double* p, Raw a) { std::memcpy(p, a.half, sizeof a.half); }
 inline double get_lane(Raw a, int k) { return a.half[k / 2][k % 2]; }
 inline void set_lane(Raw& a, int k, double x) { a.half[k / 2][k % 2] = x; }
-inline RawMask less(Raw a, Raw b) {
-  return {{Long2(a.half[0] < b.half[0]), Long2(a.half[1] < b.half[1])}};
-}
+inline RawMask less(Raw a, Raw b) { return {{Long2(a.half[0] < b.half[0]), Long2(a.half[1] < b.half[1])}}; }
 inline RawMask less_equal(Raw a, Raw b) {
   return {{Long2(a.half[0] <= b.half[0]), Long2(a.half[1] <= b.half[1])}};
 }
