@@ -62,7 +62,7 @@ struct VelocityDivergence : PairOperator<VelocityDivergence> {
   InOut<Scalar> density_rate{"density_rate", unit("kg/m3/s"), doc("Rate of change of the density.")};
 
   double sound_speed = 0;     // m/s
-  double limiter = 3.0;      // eta of the paper
+  double limiter = 3.0;       // eta of the paper
   double least = 0.0;         // smallest beta, also in expansion
   double gradient_scale = 1;  // 1 / slope of lattice_sums()
 

@@ -83,6 +83,7 @@ struct FluidBody {
       op.reference_density = density;
       op.per_lattice_sum = 1.0 / lattice.w;
       op.free_surface = physics.free_surface;
+      op.tolerance = physics.free_surface ? physics.summation_tolerance * density : 0.0;
     };
     if (has_walls()) {
       b.attach<WallDensity>("fluid.density.walls", at_density, and_walls());

@@ -37,8 +37,13 @@ struct Wcsph final : Physics {
       default_to(true)};
   Param<bool> density_summation{"density_summation", nullptr,
                                 "Whether density is re-initialised by summation in each advection step, which keeps "
-                                "the errors of the continuity equation from adding up in violent flows.",
+                                "the errors of the continuity equation from adding up.",
                                 default_to(true)};
+  Param<double> summation_tolerance{
+      "summation_tolerance", "1",
+      "With a free surface the density may differ by this part from that of the summation. The noise of the summation "
+      "only ever raises densities there: with 0 the plateau of the pressure in the 2D dam break is 22 % off.",
+      non_negative, default_to(0.01)};
   Param<double> advection_cfl{"advection_cfl", "1", "Advection step over h / |v|.", positive,
                               default_to(0.25)};
   Param<double> acoustic_cfl{"acoustic_cfl", "1", "Acoustic step over h / (c + |v|).", positive,
@@ -47,10 +52,11 @@ struct Wcsph final : Physics {
       "dissipation_limiter", "1",
       "Factor eta of the Riemann solver's limiter min(eta (u_L - u_R) / c, 1); larger damps more.",
       non_negative, default_to(3.0)};
-  Param<double> least_dissipation{"least_dissipation", "1",
-                                  "Smallest factor of the Riemann solver's dissipation, from 0 (the limiter alone) to "
-                                  "1 (an upwind scheme).",
-                                  between(0.0, 1.0), default_to(0.0)};
+  Param<double> least_dissipation{
+      "least_dissipation", "1",
+      "Smallest factor of the Riemann solver's dissipation, from 0 (the limiter alone) to "
+      "1 (an upwind scheme).",
+      between(0.0, 1.0), default_to(0.0)};
   Param<double> shift_strength{"shift_strength", "1",
                                "Factor of the shift where there is no free surface; 0: none.", non_negative,
                                default_to(0.5)};
