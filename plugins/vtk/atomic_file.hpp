@@ -62,7 +62,7 @@ class AtomicFile {
 
   // Throws WriteFailed if anything failed since the beginning.
   void check() const;
-  // Waits for the disk, then puts the file in place. Throws WriteFailed as check() does.
+  // Waits until the content is on the disk, then puts the file in place. Throws WriteFailed as check() does.
   void commit();
 
  private:

@@ -33,8 +33,8 @@ class VtkOutput final : public Output {
   Param<Choice> compression{
       "compression",
       nullptr,
-      "fast: a third smaller at little cost; small: a fifth smaller than fast, but ten times "
-      "as slow; none: for programs that cannot read compressed files.",
+      "fast: about a quarter smaller than none, at little cost; small: a fifth smaller still, but "
+      "some fifteen times as slow; none: for programs that cannot read compressed files.",
       one_of("fast", "small", "none"),
       default_to("fast"),
       example("small")};
