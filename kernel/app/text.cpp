@@ -45,6 +45,7 @@ std::string simulated_time_text(double seconds) {
 std::string percent_text(double share) {
   const double percent = 100.0 * share;
   if (!std::isfinite(percent)) return "-";
+  if (percent != 0.0 && std::abs(percent) < 0.1) return fmt::format("{:.1g} %", percent);
   return std::abs(percent) < 9.95 ? fmt::format("{:.1f} %", percent) : fmt::format("{:.0f} %", percent);
 }
 

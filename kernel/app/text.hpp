@@ -15,7 +15,7 @@ std::string bytes_text(double bytes);       ///< 812 B, 12.3 MB, 1.2 GB
 std::string duration_text(double seconds);  ///< 0.42 s, 12 s, 3 min 20 s, 2 h 05 min
 std::string simulated_time_text(
     double seconds);  ///< four significant digits with ms, us where they fit better: 0.41 ms
-std::string percent_text(double share);             ///< 12 %, 0.3 %
+std::string percent_text(double share);             ///< 12 %, 0.3 %, 2e-05 %
 std::string significant(double value, int digits);  ///< as %.{digits}g
 
 /// Columns with two blanks between them; the first `left` are aligned to the left, the others to the right.
