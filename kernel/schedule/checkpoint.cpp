@@ -284,10 +284,10 @@ void Simulation::Implementation::load(std::istream& stream) {
   stepper.last_dt = stored.last_dt;
   stepper.outer_steps = stored.outer_steps;
   stepper.check_health();
+  neighbourhood.rebuild();
   neighbourhood.renewals = stored.renewals;
   neighbourhood.sorts = stored.sorts;
   neighbourhood.list_builds = stored.list_builds;
-  neighbourhood.rebuild();
   for (std::size_t b = 0; b < bodies.size(); ++b)
     bodies[b]->position_changed = stored.bodies[b].position_changed;
   for (const auto& [op, block] : states) {
@@ -300,6 +300,7 @@ void Simulation::Implementation::load(std::istream& stream) {
                             " bytes of its state unread; was it saved by another version of its plugin?");
   }
   executor.forget_bindings();
+  stepper.start_timing();
   phase = Phase::running;
 }
 

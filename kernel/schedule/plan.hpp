@@ -108,7 +108,7 @@ struct Timings {
   double clear = 0.0;
   double health = 0.0;
   std::uint64_t renewals = 0, sorts = 0, list_builds = 0;
-  double outside_steps = 0.0;                  ///< operators and neighbour search before the first step or for samples
+  double outside_steps = 0.0;  ///< operators and neighbour search before the first step or for samples
   /// What steps cost beyond operators and neighbour search.
   double overhead() const { return steps + outside_steps - operators_total - neighbour_search; }
 };

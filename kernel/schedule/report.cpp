@@ -121,7 +121,8 @@ Timings Simulation::Implementation::timings() const {
   for (const auto& op : schedule.operators) {
     timings.operators.push_back({op->attachment.name, op->body->name(), op->loop, op->stage, op->calls,
                                  op->particles, op->pairs, seconds(op->ticks)});
-    operator_ticks += op->ticks;
+    // The stages outside the loops are outside the steps too.
+    if (schedule.find_loop(op->loop) != nullptr) operator_ticks += op->ticks;
     if (op->loop == SHOAL_INITIAL || op->loop == SHOAL_SAMPLE) outside_ticks += op->ticks;
   }
   for (const auto& loop : schedule.loops)

@@ -176,6 +176,7 @@ void Simulation::Implementation::initialise() {
     }
     stepper.run_outside(schedule.initial);
     stepper.check_health();
+    stepper.start_timing();
   });
   renewal_ticks_before_steps = stepper.renewal_ticks;
   phase = Phase::running;

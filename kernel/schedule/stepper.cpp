@@ -70,6 +70,12 @@ void Stepper::check_health() {
   health_ticks += executor_.stopwatch.lap();
 }
 
+void Stepper::start_timing() {
+  step_ticks = health_ticks = renewal_ticks = 0;
+  executor_.clear_ticks = executor_.image_ticks = 0;
+  neighbourhood_.sort_ticks = neighbourhood_.halo_ticks = neighbourhood_.list_ticks = 0;
+}
+
 double Stepper::limit(LoopRun& loop, const shoal_step& step) {
   double smallest = std::numeric_limits<double>::infinity();
   loop.limited_by = nullptr;

@@ -34,6 +34,8 @@ class Stepper {
   /// Wraps positions, checks them, and renews neighbours.
   void renew();
   void check_health();
+  /// Forgets what was measured before the first step.
+  void start_timing();
 
   double time = 0.0;  ///< s
   std::uint64_t outer_steps = 0;
