@@ -75,7 +75,8 @@ TEST_CASE("the force on the tank is what changes the momentum of the water") {
     }
     const double impulse = weight * momentum.back()[0];
     errors.push_back(std::hypot(momentum.back()[1] + x, momentum.back()[2] + y + impulse) / impulse);
-    MESSAGE(std::string(dx) << ": momentum and impulse differ by " << errors.back() << " of the weight's impulse");
+    MESSAGE(std::string(dx) << ": momentum and impulse differ by " << errors.back()
+                            << " of the weight's impulse");
   }
   CHECK(errors[0] < 5e-3);
   CHECK(errors[1] < 0.75 * errors[0]);
