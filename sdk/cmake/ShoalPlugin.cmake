@@ -59,6 +59,9 @@ function(shoal_add_plugin name)
   shoal_compile_flags(flags MARCH "${arg_MARCH}")
   # Without a build type CMake would not optimise at all (measured: a pair loop is 20 times slower), with others -O2.
   target_compile_options(${target} PRIVATE ${flags} $<$<NOT:$<CONFIG:Debug>>:-O3>)
+  set(map "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/plugin.map")
+  target_link_options(${target} PRIVATE "-Wl,--version-script=${map}")
+  set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS "${map}")
   # A symbol that is missing is an error now, not when a user loads the plugin (sanitizers leave theirs open).
   if(NOT SHOAL_SANITIZE)
     target_link_options(${target} PRIVATE -Wl,--no-undefined)
