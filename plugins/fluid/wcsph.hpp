@@ -35,13 +35,15 @@ struct Wcsph final : Physics {
       "Whether the fluid has a free surface. Without one, density is summed everywhere and "
       "particles are kept evenly spread.",
       default_to(true)};
-  Param<bool> density_summation{"density_summation", nullptr,
-                                "Whether density is re-initialised by summation in each advection step, which keeps "
-                                "the errors of the continuity equation from adding up.",
-                                default_to(true)};
+  Param<bool> density_summation{
+      "density_summation", nullptr,
+      "Whether density is re-initialised by summation in each advection step, which keeps "
+      "the errors of the continuity equation from adding up.",
+      default_to(true)};
   Param<double> summation_tolerance{
       "summation_tolerance", "1",
-      "With a free surface the density may differ by this part from that of the summation. The noise of the summation "
+      "With a free surface the density may differ by this part from that of the summation. The noise of the "
+      "summation "
       "only ever raises densities there: with 0 the plateau of the pressure in the 2D dam break is 22 % off.",
       non_negative, default_to(0.01)};
   Param<double> advection_cfl{"advection_cfl", "1", "Advection step over h / |v|.", positive,

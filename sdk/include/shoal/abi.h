@@ -56,20 +56,26 @@ typedef enum shoal_status {
 // ---------------------------------------------------------------------------------------------------------------
 // The stamp: read before anything of the plugin is called.
 
-enum { SHOAL_ISA_AVX2 = 1u << 0, SHOAL_ISA_FMA = 1u << 1, SHOAL_ISA_AVX512F = 1u << 2, SHOAL_ISA_AVX512DQ = 1u << 3,
-       SHOAL_ISA_AVX512VL = 1u << 4, SHOAL_ISA_AVX512BW = 1u << 5 };
+enum {
+  SHOAL_ISA_AVX2 = 1u << 0,
+  SHOAL_ISA_FMA = 1u << 1,
+  SHOAL_ISA_AVX512F = 1u << 2,
+  SHOAL_ISA_AVX512DQ = 1u << 3,
+  SHOAL_ISA_AVX512VL = 1u << 4,
+  SHOAL_ISA_AVX512BW = 1u << 5
+};
 
 // Exported by each plugin as the constant `shoal_plugin_stamp`.
 typedef struct shoal_stamp {
-  uint64_t magic;         // SHOAL_ABI_MAGIC
-  uint32_t size;          // sizeof(shoal_stamp)
+  uint64_t magic;  // SHOAL_ABI_MAGIC
+  uint32_t size;   // sizeof(shoal_stamp)
   uint32_t abi_major;
   uint32_t abi_minor;
-  uint32_t real_bytes;    // 8: fields are double precision
-  uint32_t index_bytes;   // 4: neighbours are named by 32-bit indices
-  uint32_t isa;           // instruction sets that the code needs, SHOAL_ISA_*
-  char sdk_version[16];   // text, for messages
-  char compiler[64];      // text, for messages
+  uint32_t real_bytes;   // 8: fields are double precision
+  uint32_t index_bytes;  // 4: neighbours are named by 32-bit indices
+  uint32_t isa;          // instruction sets that the code needs, SHOAL_ISA_*
+  char sdk_version[16];  // text, for messages
+  char compiler[64];     // text, for messages
 } shoal_stamp;
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -79,8 +85,8 @@ typedef enum shoal_value_kind {
   SHOAL_BOOLEAN = 1,
   SHOAL_INTEGER = 2,
   SHOAL_REAL = 3,
-  SHOAL_VECTOR = 4,             // as many numbers as the case has dimensions
-  SHOAL_MATRIX = 5,             // dimensions x dimensions numbers, a list of rows
+  SHOAL_VECTOR = 4,  // as many numbers as the case has dimensions
+  SHOAL_MATRIX = 5,  // dimensions x dimensions numbers, a list of rows
   SHOAL_TEXT = 6,
   SHOAL_CHOICE = 7,             // one of `choices`
   SHOAL_EXPRESSION = 8,         // a number or an expression of x, y, z, t and the case's parameters
@@ -88,7 +94,7 @@ typedef enum shoal_value_kind {
   SHOAL_BODY = 10,              // the name of a body of the case
   SHOAL_FIELD = 11,             // the name of a field, e.g. velocity, or of a component, e.g. velocity.x
   SHOAL_FILE = 12,              // path of a file that must exist; handed over as an absolute path
-  SHOAL_OBJECT = 13             // an object of a registered type of `object_kind`: name, or {name: {key: value}}
+  SHOAL_OBJECT = 13  // an object of a registered type of `object_kind`: name, or {name: {key: value}}
 } shoal_value_kind;
 
 typedef enum shoal_type_kind {
@@ -102,27 +108,28 @@ typedef enum shoal_type_kind {
 
 enum {
   SHOAL_PARAMETER_REQUIRED = 1u << 0,
-  SHOAL_PARAMETER_LIST = 1u << 1,               // a sequence of values of the kind; a single one counts as a list of one
+  SHOAL_PARAMETER_LIST = 1u << 1,  // a sequence of values of the kind; a single one counts as a list of one
   SHOAL_PARAMETER_HAS_MINIMUM = 1u << 2,
   SHOAL_PARAMETER_HAS_MAXIMUM = 1u << 3,
-  SHOAL_PARAMETER_MINIMUM_EXCLUDED = 1u << 4,   // value > minimum, else value >= minimum
+  SHOAL_PARAMETER_MINIMUM_EXCLUDED = 1u << 4,  // value > minimum, else value >= minimum
   SHOAL_PARAMETER_MAXIMUM_EXCLUDED = 1u << 5
 };
 
 typedef struct shoal_parameter {
   uint32_t size;
-  uint32_t kind;               // shoal_value_kind
-  uint32_t flags;              // SHOAL_PARAMETER_*
-  uint32_t object_kind;        // SHOAL_OBJECT: shoal_type_kind of the objects that fit; else 0
-  const char* key;             // snake_case, as written in a case
-  const char* unit;            // in UDUNITS-2 syntax, "1" without dimension; NULL where a unit makes no sense
-  const char* default_text;    // as it would stand in a case; NULL: none (then an optional value is simply not set)
-  double minimum, maximum;     // bounds of numbers, or of each component
+  uint32_t kind;         // shoal_value_kind
+  uint32_t flags;        // SHOAL_PARAMETER_*
+  uint32_t object_kind;  // SHOAL_OBJECT: shoal_type_kind of the objects that fit; else 0
+  const char* key;       // snake_case, as written in a case
+  const char* unit;      // in UDUNITS-2 syntax, "1" without dimension; NULL where a unit makes no sense
+  const char*
+      default_text;  // as it would stand in a case; NULL: none (then an optional value is simply not set)
+  double minimum, maximum;  // bounds of numbers, or of each component
   uint32_t n_choices;
   uint32_t reserved;
   const char* const* choices;
-  const char* doc;             // one or a few sentences
-  const char* example;         // as it would stand in a case
+  const char* doc;      // one or a few sentences
+  const char* example;  // as it would stand in a case
 } shoal_parameter;
 
 typedef struct shoal_expression shoal_expression;  // opaque; evaluated through the host
@@ -133,15 +140,15 @@ enum { SHOAL_ORIGIN_DEFAULT = 0, SHOAL_ORIGIN_CASE = 1, SHOAL_ORIGIN_COMMAND_LIN
 // A checked value, in SI units. `n` is the number of elements: 1, or the length of a list; 0 if it is not set.
 typedef struct shoal_value {
   uint32_t size;
-  uint32_t kind;    // shoal_value_kind
+  uint32_t kind;  // shoal_value_kind
   uint32_t n;
-  uint32_t origin;  // SHOAL_ORIGIN_*
-  const double* reals;                          // REAL: n, VECTOR: n * D, MATRIX: n * D * D row by row
-  const int64_t* integers;                      // BOOLEAN (0 or 1), INTEGER, CHOICE (index), BODY (index): n
-  const char* const* texts;                     // TEXT, CHOICE, BODY, FIELD, FILE: n
-  const shoal_expression* const* expressions;   // EXPRESSION: n, VECTOR_EXPRESSION: n * D
-  const shoal_object* const* objects;           // OBJECT: n
-  const char* place;                            // "dam_break.yaml:12:51", for messages
+  uint32_t origin;                             // SHOAL_ORIGIN_*
+  const double* reals;                         // REAL: n, VECTOR: n * D, MATRIX: n * D * D row by row
+  const int64_t* integers;                     // BOOLEAN (0 or 1), INTEGER, CHOICE (index), BODY (index): n
+  const char* const* texts;                    // TEXT, CHOICE, BODY, FIELD, FILE: n
+  const shoal_expression* const* expressions;  // EXPRESSION: n, VECTOR_EXPRESSION: n * D
+  const shoal_object* const* objects;          // OBJECT: n
+  const char* place;                           // "dam_break.yaml:12:51", for messages
 } shoal_value;
 
 typedef struct shoal_type shoal_type;
@@ -159,10 +166,10 @@ struct shoal_object {
 // Fields
 
 typedef enum shoal_rank {
-  SHOAL_SCALAR = 0,      // 1 component
-  SHOAL_RANK_VECTOR = 1, // D components, interleaved
-  SHOAL_SYMMETRIC = 2,   // D (D + 1) / 2 components: xx, xy, yy  or  xx, xy, xz, yy, yz, zz
-  SHOAL_RANK_MATRIX = 3  // D x D components, row by row
+  SHOAL_SCALAR = 0,       // 1 component
+  SHOAL_RANK_VECTOR = 1,  // D components, interleaved
+  SHOAL_SYMMETRIC = 2,    // D (D + 1) / 2 components: xx, xy, yy  or  xx, xy, xz, yy, yz, zz
+  SHOAL_RANK_MATRIX = 3   // D x D components, row by row
 } shoal_rank;
 
 typedef enum shoal_data_type { SHOAL_DOUBLE = 0, SHOAL_INT64 = 1 } shoal_data_type;
@@ -170,11 +177,11 @@ typedef enum shoal_data_type { SHOAL_DOUBLE = 0, SHOAL_INT64 = 1 } shoal_data_ty
 enum {
   SHOAL_READ = 1u << 0,
   SHOAL_WRITE = 1u << 1,
-  SHOAL_ACCUMULATE = 1u << 2,      // adds to a field that its owner clears (shoal_builder::own_field)
-  SHOAL_OF_NEIGHBOURS = 1u << 3,   // read of the neighbours too: their halo is renewed first
-  SHOAL_NOT_OWN = 1u << 4,         // not of the operator's own body, only of its neighbours'
-  SHOAL_DERIVED = 1u << 5,         // need not survive a restart: written anew in each step before it is read
-  SHOAL_OPTIONAL = 1u << 6         // may be absent: the view's data is then NULL (only if nobody else declares it)
+  SHOAL_ACCUMULATE = 1u << 2,     // adds to a field that its owner clears (shoal_builder::own_field)
+  SHOAL_OF_NEIGHBOURS = 1u << 3,  // read of the neighbours too: their halo is renewed first
+  SHOAL_NOT_OWN = 1u << 4,        // not of the operator's own body, only of its neighbours'
+  SHOAL_DERIVED = 1u << 5,        // need not survive a restart: written anew in each step before it is read
+  SHOAL_OPTIONAL = 1u << 6  // may be absent: the view's data is then NULL (only if nobody else declares it)
 };
 
 // What an operator does with a field. Shared fields (position, velocity, mass, ...; see shoal/shared_fields.hpp)
@@ -194,9 +201,9 @@ typedef struct shoal_access {
 typedef struct shoal_field {
   uint32_t size;
   uint32_t components;
-  void* data;          // components interleaved
+  void* data;  // components interleaved
   uint64_t n_owned;
-  uint64_t n_total;    // owned and halo
+  uint64_t n_total;  // owned and halo
 } shoal_field;
 
 // Neighbours of the owned particles of a body among the particles (owned and halo) of another, or of itself.
@@ -204,7 +211,7 @@ typedef struct shoal_field {
 // neighbour, so every index of a row may be read.
 typedef struct shoal_neighbours {
   uint32_t size;
-  uint32_t body;             // the neighbours' body
+  uint32_t body;  // the neighbours' body
   const uint64_t* offsets;
   const uint32_t* counts;
   const uint32_t* indices;
@@ -220,10 +227,10 @@ typedef struct shoal_step {
   uint32_t size;
   int32_t dimensions;
   double time;
-  double dt;            // step of the loop that the operator is attached to; 0 in stages outside the loops
-  uint64_t number;      // steps that this loop has made
-  double parent_dt;     // step of the parent loop; dt itself at the top
-  double parent_time;   // time of the parent loop at the beginning of its step
+  double dt;           // step of the loop that the operator is attached to; 0 in stages outside the loops
+  uint64_t number;     // steps that this loop has made
+  double parent_dt;    // step of the parent loop; dt itself at the top
+  double parent_time;  // time of the parent loop at the beginning of its step
 } shoal_step;
 
 // A piece of an operator's work: owned particles begin <= i < end. Chunks do not depend on the number of threads.
@@ -231,22 +238,22 @@ typedef struct shoal_chunk {
   uint32_t size;
   uint32_t number;
   uint64_t begin, end;
-  double* partial;      // n_reductions values, set to their identities: the chunk's part of the reductions
+  double* partial;  // n_reductions values, set to their identities: the chunk's part of the reductions
 } shoal_chunk;
 
 typedef enum shoal_reduction { SHOAL_SUM = 0, SHOAL_MINIMUM = 1, SHOAL_MAXIMUM = 2 } shoal_reduction;
 
 typedef enum shoal_configuration {
-  SHOAL_CURRENT = 0,    // renewed as the particles move
-  SHOAL_REFERENCE = 1   // built once from the initial positions
+  SHOAL_CURRENT = 0,   // renewed as the particles move
+  SHOAL_REFERENCE = 1  // built once from the initial positions
 } shoal_configuration;
 
 typedef struct shoal_relation_request {
   uint32_t size;
-  uint32_t body;            // the neighbours' body
-  uint32_t configuration;   // shoal_configuration
+  uint32_t body;           // the neighbours' body
+  uint32_t configuration;  // shoal_configuration
   uint32_t reserved;
-  double cutoff;            // m
+  double cutoff;  // m
 } shoal_relation_request;
 
 // What bind hands over: views in the order of the operator's accesses and relations.
@@ -254,9 +261,9 @@ typedef struct shoal_binding {
   uint32_t size;
   int32_t dimensions;
   uint64_t n_owned;
-  const shoal_field* own;                  // [access]; data NULL for SHOAL_NOT_OWN
-  const shoal_neighbours* neighbours;      // [relation]
-  const shoal_field* of_neighbours;        // [relation * n_accesses + access]; data NULL unless SHOAL_OF_NEIGHBOURS
+  const shoal_field* own;              // [access]; data NULL for SHOAL_NOT_OWN
+  const shoal_neighbours* neighbours;  // [relation]
+  const shoal_field* of_neighbours;  // [relation * n_accesses + access]; data NULL unless SHOAL_OF_NEIGHBOURS
 } shoal_binding;
 
 // Writes or reads a block of bytes of an operator's own state in a checkpoint.
@@ -280,8 +287,8 @@ enum {
 // An operator on one body, possibly with neighbours in this and other bodies. Any callback but `run` may be NULL.
 typedef struct shoal_operator {
   uint32_t size;
-  uint32_t flags;              // SHOAL_OPERATOR_*
-  const char* name;            // e.g. "fluid.viscous_force"
+  uint32_t flags;    // SHOAL_OPERATOR_*
+  const char* name;  // e.g. "fluid.viscous_force"
   uint32_t body;
   uint32_t n_accesses;
   const shoal_access* accesses;
@@ -290,17 +297,17 @@ typedef struct shoal_operator {
   const shoal_relation_request* relations;
   const uint32_t* reductions;  // shoal_reduction
   void* self;
-  void (*destroy)(void* self);                                                                 // [main]
+  void (*destroy)(void* self);  // [main]
   // Called before the first run and whenever arrays have moved.                               // [main]
   shoal_status (*bind)(void* self, const shoal_binding* binding);
-  shoal_status (*begin)(void* self, const shoal_step* step);                                   // [main]
-  shoal_status (*run)(void* self, const shoal_step* step, const shoal_chunk* chunk);           // [worker]
+  shoal_status (*begin)(void* self, const shoal_step* step);                          // [main]
+  shoal_status (*run)(void* self, const shoal_step* step, const shoal_chunk* chunk);  // [worker]
   // After all chunks; results are the reductions in the order of `reductions`.                // [main]
   shoal_status (*end)(void* self, const shoal_step* step, const double* results);
   // Largest stable step of the loop that the operator is attached to, in s.                   // [worker]
   double (*time_step)(void* self, const shoal_step* step, const shoal_chunk* chunk);
-  shoal_status (*save)(void* self, const shoal_stream* stream);                                // [main]
-  shoal_status (*load)(void* self, const shoal_stream* stream);                                // [main]
+  shoal_status (*save)(void* self, const shoal_stream* stream);  // [main]
+  shoal_status (*load)(void* self, const shoal_stream* stream);  // [main]
 } shoal_operator;
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -310,20 +317,20 @@ typedef struct shoal_body {
   uint32_t size;
   uint32_t index;
   const char* name;
-  uint64_t n_particles;            // owned, at the time of the call
-  double spacing;                  // initial distance of the particles, m
-  double smoothing_length;         // m
-  double cutoff;                   // radius of the smoothing kernel's support, m
-  const char* smoothing_kernel;    // name, see shoal/smoothing_kernel.hpp
-  const shoal_object* material;    // NULL if the body has none
-  double lower[3], upper[3];       // bounds of the initial particles, m
+  uint64_t n_particles;          // owned, at the time of the call
+  double spacing;                // initial distance of the particles, m
+  double smoothing_length;       // m
+  double cutoff;                 // radius of the smoothing kernel's support, m
+  const char* smoothing_kernel;  // name, see shoal/smoothing_kernel.hpp
+  const shoal_object* material;  // NULL if the body has none
+  double lower[3], upper[3];     // bounds of the initial particles, m
 } shoal_body;
 
 typedef struct shoal_context shoal_context;  // opaque: the kernel's own
 
 // Stages outside the loops, to be given as loop name to attach.
-#define SHOAL_INITIAL "initial"   // once before the first step; not after a restart
-#define SHOAL_SAMPLE "sample"     // before outputs and probes, when one is due
+#define SHOAL_INITIAL "initial"  // once before the first step; not after a restart
+#define SHOAL_SAMPLE "sample"    // before outputs and probes, when one is due
 
 typedef struct shoal_builder {
   uint32_t size;
@@ -332,10 +339,10 @@ typedef struct shoal_builder {
   uint32_t n_bodies;
   uint32_t reserved;
   const shoal_body* bodies;
-  double gravity[3];             // m/s2
-  double end_time;               // s
-  double lower[3], upper[3];     // the domain, m; infinite where it is open
-  uint32_t periodic[3];          // 1 where the domain repeats
+  double gravity[3];          // m/s2
+  double end_time;            // s
+  double lower[3], upper[3];  // the domain, m; infinite where it is open
+  uint32_t periodic[3];       // 1 where the domain repeats
   uint32_t reserved_2;
   // Declares loop `name` with its stages in order, or adds stages to an existing one. At the top if `parent` is
   // NULL, else inside stage `parent_stage` of `parent`, where it sub-cycles to cover the parent's step. A later
@@ -349,7 +356,8 @@ typedef struct shoal_builder {
   // order in which they were attached.
   shoal_status (*attach)(shoal_context*, const char* loop, const char* stage, const shoal_operator* op);
   // The caller owns a field: others may accumulate to it, and it is set to zero at the beginning of this stage.
-  shoal_status (*own_field)(shoal_context*, uint32_t body, const char* field, const char* loop, const char* stage);
+  shoal_status (*own_field)(shoal_context*, uint32_t body, const char* field, const char* loop,
+                            const char* stage);
   // The run stops with SHOAL_PHYSICS_FAILED when a component leaves [minimum, maximum] or is NaN.
   shoal_status (*guard)(shoal_context*, uint32_t body, const char* field, double minimum, double maximum);
   // A C interface (shoal/interfaces/) of a body's material: the struct of functions and its `self`; *api is NULL
@@ -395,12 +403,12 @@ typedef struct shoal_shape_api {
 
 typedef struct shoal_snapshot_field {
   uint32_t size;
-  uint32_t rank;          // shoal_rank
+  uint32_t rank;  // shoal_rank
   uint32_t data_type;
   uint32_t components;
   const char* name;
   const char* unit;
-  const void* data;       // components interleaved, owned particles
+  const void* data;  // components interleaved, owned particles
 } shoal_snapshot_field;
 
 typedef struct shoal_snapshot_body {
@@ -408,7 +416,7 @@ typedef struct shoal_snapshot_body {
   uint32_t n_fields;
   const char* name;
   uint64_t n_particles;
-  const double* position;              // interleaved, D per particle
+  const double* position;  // interleaved, D per particle
   const int64_t* id;
   const shoal_snapshot_field* fields;  // the same names, ranks and order in every snapshot of a run
 } shoal_snapshot_body;
@@ -417,8 +425,8 @@ typedef struct shoal_snapshot {
   uint32_t size;
   int32_t dimensions;
   double time;
-  uint64_t step;                       // number of outer steps
-  uint64_t sequence;                   // 0, 1, 2, ... for each output
+  uint64_t step;      // number of outer steps
+  uint64_t sequence;  // 0, 1, 2, ... for each output
   uint32_t n_bodies;
   uint32_t reserved;
   const shoal_snapshot_body* bodies;
@@ -452,32 +460,32 @@ typedef struct shoal_probe_api {
 
 struct shoal_type {
   uint32_t size;
-  uint32_t kind;                      // shoal_type_kind
-  const char* name;                   // "plugin.type"
-  const char* doc;                    // what it models, when to take it
-  const char* source;                 // paper, or NULL
+  uint32_t kind;       // shoal_type_kind
+  const char* name;    // "plugin.type"
+  const char* doc;     // what it models, when to take it
+  const char* source;  // paper, or NULL
   uint32_t n_parameters;
   uint32_t reserved;
   const shoal_parameter* parameters;
-  const void* api;                    // shoal_physics_api, shoal_material_api, ... according to kind
+  const void* api;  // shoal_physics_api, shoal_material_api, ... according to kind
 };
 
 typedef struct shoal_requirement {
   uint32_t size;
   uint32_t reserved;
   const char* id;
-  const char* minimum_version;        // "1.2.0" or NULL
-  const char* below_version;          // first version that no longer serves, or NULL
+  const char* minimum_version;  // "1.2.0" or NULL
+  const char* below_version;    // first version that no longer serves, or NULL
 } shoal_requirement;
 
 typedef struct shoal_plugin {
   uint32_t size;
   uint32_t n_requirements;
-  const char* id;                     // "fluid": the first part of its types' names
-  const char* version;                // "1.2.3"
-  const char* licence;                // SPDX expression
-  const char* summary;                // one line
-  const char* citation;               // or NULL
+  const char* id;        // "fluid": the first part of its types' names
+  const char* version;   // "1.2.3"
+  const char* licence;   // SPDX expression
+  const char* summary;   // one line
+  const char* citation;  // or NULL
   const shoal_requirement* requirements;
   uint32_t n_types;
   uint32_t reserved;
@@ -493,9 +501,9 @@ typedef struct shoal_host {
   uint32_t size;
   uint32_t abi_major;
   uint32_t abi_minor;
-  uint32_t isa;                                                                  // what this machine has
-  const char* version;                                                           // of Shoal
-  void (*log)(uint32_t level, const char* text);                                 // [any]
+  uint32_t isa;                                   // what this machine has
+  const char* version;                            // of Shoal
+  void (*log)(uint32_t level, const char* text);  // [any]
   // Says why the callback is about to return a status other than SHOAL_OK.      // [any]
   void (*fail)(const char* text);
   // out[k] at the k-th point (D interleaved coordinates) and time t.            // [any]
