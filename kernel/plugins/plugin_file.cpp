@@ -48,35 +48,40 @@ std::string made_with(const shoal_stamp& stamp) {
   return "it was made with SDK " + (sdk.empty() ? "?" : sdk) + " and " + (compiler.empty() ? "?" : compiler);
 }
 
-// From glibc: "x.so: undefined symbol: foo", "libx.so.1: cannot open shared object file: ...".
-LoadFailure explain_dlerror(const std::string& id, const fs::path& path, const std::string& text) {
-  constexpr std::string_view undefined = "undefined symbol: ";
-  constexpr std::string_view missing = ": cannot open shared object file";
-  if (const auto at = text.find(undefined); at != std::string::npos) {
-    std::string symbol = text.substr(at + undefined.size());
-    symbol.resize(std::min(symbol.find_first_of(" ,\t"), symbol.size()));
-    return {
-        LoadProblem::undefined_symbol,
-        id,
-        path,
-        quoted(id, path) + " uses the symbol '" + symbol + "', which no library provides",
-        {"a plugin may use nothing of the kernel or of other plugins but what its host table offers; link it "
-         "with -Wl,--no-undefined to see this when it is built"}};
-  }
-  if (const auto at = text.find(missing); at != std::string::npos) {
-    const auto begin = text.rfind(' ', at);
-    const std::string library = text.substr(begin == std::string::npos ? 0 : begin + 1,
-                                            at - (begin == std::string::npos ? 0 : begin + 1));
-    return {LoadProblem::missing_library,
-            id,
-            path,
-            quoted(id, path) + " needs the library " + library + ", which is not on this machine",
-            {"install the package that holds it, then run again"}};
-  }
-  return {LoadProblem::not_loadable, id, path, quoted(id, path) + " cannot be loaded: " + text};
+// The part of `text` between two phrases; empty if it has not both.
+std::string between(const std::string& text, std::string_view before, std::string_view after) {
+  const auto begin = text.find(before);
+  if (begin == std::string::npos) return {};
+  const auto end = text.find_first_of(after, begin + before.size());
+  return text.substr(begin + before.size(), end == std::string::npos ? end : end - begin - before.size());
 }
 
-// Never destroyed, see above.
+// `text` is glibc's inside Boost's: "... (dlerror system message: x.so: undefined symbol: foo): ...".
+LoadFailure explain_dlerror(const std::string& id, const fs::path& path, const std::string& text) {
+  const auto failure = [&](LoadProblem problem, const std::string& what, std::vector<std::string> notes) {
+    return LoadFailure(problem, id, path, quoted(id, path) + " " + what, std::move(notes));
+  };
+  if (const std::string symbol = between(text, "undefined symbol: ", " ,)"); !symbol.empty())
+    return failure(
+        LoadProblem::undefined_symbol, "uses the symbol '" + symbol + "', which no library provides",
+        {"a plugin may use nothing of the kernel or of other plugins but what its host table offers; "
+         "link it with -Wl,--no-undefined to see this when it is built"});
+  if (const std::string version = between(text, "version `", "'"); !version.empty())
+    return failure(LoadProblem::missing_library,
+                   "was built with newer system libraries than this machine has (it needs " + version + ")",
+                   {"build it on this machine, or on one with the same system"});
+  constexpr std::string_view begin = "dlerror system message: ";
+  std::string message = between(text, begin, "");
+  if (message.empty()) message = text;
+  if (const auto at = message.find(": cannot open shared object file"); at != std::string::npos)
+    return failure(LoadProblem::missing_library,
+                   "needs the library " + message.substr(0, at) + ", which is not on this machine",
+                   {"install the package that holds it, then run again"});
+  return failure(LoadProblem::not_loadable, "cannot be loaded: " + message, {});
+}
+
+// Never destroyed, see above. An exception out of a static object's constructor cannot be caught here: it finds no
+// way through the dynamic linker, and the C++ runtime ends the process with its text.
 boost::dll::shared_library& map_library(const std::string& id, const fs::path& path) {
   using boost::dll::load_mode::rtld_local;
   using boost::dll::load_mode::rtld_now;
@@ -86,13 +91,6 @@ boost::dll::shared_library& map_library(const std::string& id, const fs::path& p
     library->load(path, rtld_now | rtld_local);
   } catch (const std::system_error& error) {
     throw explain_dlerror(id, path, error.what());
-  } catch (const std::exception& error) {  // out of the library's own static constructors
-    throw LoadFailure(
-        LoadProblem::not_loadable, id, path,
-        quoted(id, path) + " cannot be loaded: one of its static objects failed: " + error.what());
-  } catch (...) {
-    throw LoadFailure(LoadProblem::not_loadable, id, path,
-                      quoted(id, path) + " cannot be loaded: one of its static objects failed");
   }
   return *libraries->emplace_back(std::move(library));
 }

@@ -198,9 +198,6 @@ TEST_CASE("an entry that is missing, fails or throws") {
   CHECK(said(throws) ==
         "did not start: an exception left the plugin, which its callbacks must not let happen: out of the "
         "entry");
-  const LoadFailure constructor = failure_of("static_throws");
-  CHECK(constructor.problem() == LoadProblem::not_loadable);
-  CHECK(said(constructor) == "cannot be loaded: one of its static objects failed: out of a constructor");
 }
 
 TEST_CASE("a description that cannot be right") {

@@ -50,7 +50,7 @@ TEST_CASE("the order is command line, case, environment, build tree, installatio
   CHECK(all.find("five") == environment / "five.so");
   CHECK(all.find("six") == built / "six.so");
   CHECK(all.available() == std::vector<std::string>{"five", "four", "one", "six", "three", "two"});
-  CHECK(all.files().size() == 10);
+  CHECK(all.files().size() == 11);
 
   settings.allow_plugin_paths = false;
   const SearchPath careful(settings);
