@@ -44,7 +44,7 @@ TEST_CASE("killed while it writes, a run can always go on and ends the same") {
   std::filesystem::remove_all("killed");
   std::mt19937 random(20240229);
   // From before the first file to well into the run, wherever the machine is slow or fast.
-  std::uniform_int_distribution<int> milliseconds(5, 250);
+  std::uniform_int_distribution<int> milliseconds(5, 100);
   int kills = 0;
   bool finished = false;
   for (int k = 0; k < 40 && !finished; ++k) {
