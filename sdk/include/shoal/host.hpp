@@ -5,6 +5,7 @@
 // status with a text. `guarded` stands at every callback, so that no exception ever crosses.
 #pragma once
 
+#include <cstring>
 #include <exception>
 #include <stdexcept>
 #include <string>
@@ -36,6 +37,15 @@ struct HostFailed : std::exception {
 };
 
 }  // namespace impl
+
+// A copy of a struct that the kernel made: members that it did not know are zero, those that we do not know are left.
+template <class Struct>
+Struct copy_of(const Struct& made) {
+  Struct copy{};
+  std::memcpy(static_cast<void*>(&copy), &made, made.size < sizeof(Struct) ? made.size : sizeof(Struct));
+  copy.size = sizeof(Struct);
+  return copy;
+}
 
 inline const shoal_host& host() { return *impl::host_table; }
 

@@ -251,13 +251,15 @@ class OperatorBase : public Parameterised {
     n_owned_ = binding.n_owned;
     const std::size_t n = fields_.size();
     for (std::size_t a = 0; a < n; ++a) {
-      fields_[a]->own_ = binding.own[a].data;
+      fields_[a]->own_ = SHOAL_AT(shoal_field, binding.own, a)->data;
       for (std::size_t k = 0; k < target_.neighbours.size(); ++k)
-        fields_[a]->of_neighbours_[k] = binding.of_neighbours[k * n + a].data;
+        fields_[a]->of_neighbours_[k] = SHOAL_AT(shoal_field, binding.of_neighbours, k * n + a)->data;
     }
-    neighbours_.assign(binding.neighbours, binding.neighbours + target_.neighbours.size());
+    neighbours_.clear();
+    for (std::size_t k = 0; k < target_.neighbours.size(); ++k)
+      neighbours_.push_back(copy_of(*SHOAL_AT(shoal_neighbours, binding.neighbours, k)));
   }
-  void set_step(const shoal_step& step) { step_ = step; }
+  void set_step(const shoal_step& step) { step_ = copy_of(step); }
   void set_results(const double* results) {
     for (std::size_t k = 0; k < results_.size(); ++k) *results_[k] = results[k];
   }

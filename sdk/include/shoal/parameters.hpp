@@ -197,7 +197,7 @@ class Parameterised {
   // Takes the values of an object of this type; `first` is the place of our first parameter in its table.
   void read(const shoal_object& object, int dimensions, std::size_t first = 0) {
     for (std::size_t k = 0; k < parameters_.size() && first + k < object.n_values; ++k) {
-      const shoal_value& value = object.values[first + k];
+      const shoal_value& value = *SHOAL_AT(shoal_value, object.values, first + k);
       if (value.place) parameters_[k]->place_ = value.place;
       if (value.n == 0) continue;
       parameters_[k]->set(value, dimensions);

@@ -37,7 +37,7 @@ class Builder {
   Vector3 gravity() const { return {c_.gravity[0], c_.gravity[1], c_.gravity[2]}; }
   double end_time() const { return c_.end_time; }
   bool periodic(int axis) const { return c_.periodic[axis] != 0; }
-  const shoal_body& body(BodyIndex index) const { return c_.bodies[index.value]; }
+  const shoal_body& body(BodyIndex index) const { return *SHOAL_AT(shoal_body, c_.bodies, index.value); }
   std::uint32_t n_bodies() const { return c_.n_bodies; }
 
   // Reads the body's material as type M; its name must be `type`.

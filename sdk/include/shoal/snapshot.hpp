@@ -33,10 +33,7 @@ class StructRange {
 
   StructRange(const Struct* first, std::size_t size) : first_(first), size_(size) {}
   std::size_t size() const { return size_; }
-  const Struct& operator[](std::size_t index) const {
-    const auto* bytes = reinterpret_cast<const std::byte*>(first_);
-    return *reinterpret_cast<const Struct*>(bytes + index * static_cast<std::size_t>(first_->size));
-  }
+  const Struct& operator[](std::size_t index) const { return *SHOAL_AT(Struct, first_, index); }
   Iterator begin() const { return {this, 0}; }
   Iterator end() const { return {this, size_}; }
 
