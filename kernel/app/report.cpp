@@ -79,8 +79,14 @@ void add_loop(const PlanLoop& loop, const std::string& indent, std::string& text
 }
 
 std::string rank_text(shoal_rank rank, shoal_data_type type) {
-  const char* words[] = {"scalar", "vector", "symmetric", "matrix"};
+  const char* words[] = {"scalar", "vector", "symmetric", "matrix", "array"};
   return type == SHOAL_INT64 ? "integer" : words[rank];
+}
+
+// Of a particle with n neighbours in a list that is not built yet: entries padded by four on average, what operators
+// keep beside them, and the place and length of the row.
+double expected_bytes(const PlanRelation& relation, double n) {
+  return (4.0 + relation.kept_bytes_per_pair) * (n > 0.0 ? n + 4.0 : 0.0) + 12.0;
 }
 
 std::string relations_text(const Plan& plan) {
@@ -94,7 +100,7 @@ std::string relations_text(const Plan& plan) {
                     relation.configuration == SHOAL_REFERENCE ? "reference" : "current",
                     significant(relation.cutoff, 4) + " m", n > 0.0 ? sign + fmt::format("{:.0f}", n) : "-",
                     built     ? fmt::format("{:.0f}", relation.bytes_per_particle)
-                    : n > 0.0 ? fmt::format("~{:.0f}", 4.0 * (n + 4.0) + 12.0)
+                    : n > 0.0 ? fmt::format("~{:.0f}", expected_bytes(relation, n))
                               : "-"});
   }
   return rows.size() > 1 ? table(rows, 2, "  ") : "";
@@ -123,7 +129,7 @@ double expected_list_bytes(const Plan& plan) {
     const PlanBody* body = find_body(plan, relation.body);
     if (body == nullptr || relation.bytes_per_particle > 0.0) continue;
     const double n = expected_neighbours(plan, relation, dimensions);
-    bytes += static_cast<double>(body->particles) * (4.0 * (n + (n > 0.0 ? 4.0 : 0.0)) + 12.0);
+    bytes += static_cast<double>(body->particles) * expected_bytes(relation, n);
   }
   return bytes;
 }

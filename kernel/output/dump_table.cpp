@@ -14,7 +14,7 @@ namespace {
 void write_headers(std::ostream& stream, const Simulation& run, std::uint32_t body) {
   stream << "id";
   for (const FieldInfo& field : run.fields(body)) {
-    const std::vector<std::string> parts = part_names(field.rank, run.dimensions());
+    const std::vector<std::string> parts = part_names(field.rank, run.dimensions(), field.components);
     for (std::uint32_t c = 0; c < field.components; ++c)
       stream << ',' << field.name << (field.components == 1 ? "" : "." + parts[c]) << " [" << field.unit
              << ']';

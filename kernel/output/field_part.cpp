@@ -17,9 +17,11 @@ struct Component {
   std::array<int, 2> axes{-1, -1};
 };
 
-std::vector<Component> components_of(shoal_rank rank, int dimensions) {
+std::vector<Component> components_of(shoal_rank rank, int dimensions, std::uint32_t n_components) {
   const std::string axes = "xyz";
   std::vector<Component> all;
+  if (rank == SHOAL_ARRAY)
+    for (std::uint32_t c = 0; c < n_components; ++c) all.push_back({"c" + std::to_string(c), {-1, -1}});
   for (int a = 0; a < dimensions; ++a) {
     if (rank == SHOAL_RANK_VECTOR) all.push_back({axes.substr(static_cast<std::size_t>(a), 1), {a, -1}});
     for (int b = rank == SHOAL_SYMMETRIC ? a : 0; b < dimensions; ++b) {
@@ -49,10 +51,11 @@ std::string part_of(std::string_view name) {
 
 bool is_part_name(std::string_view name) { return is_field_name(std::string(name)); }
 
-std::vector<std::string> part_names(shoal_rank rank, int dimensions) {
+std::vector<std::string> part_names(shoal_rank rank, int dimensions, std::uint32_t n_components) {
   std::vector<std::string> names;
-  for (const Component& component : components_of(rank, dimensions)) names.push_back(component.name);
-  if (rank != SHOAL_SCALAR) names.emplace_back("magnitude");
+  for (const Component& component : components_of(rank, dimensions, n_components))
+    names.push_back(component.name);
+  if (rank != SHOAL_SCALAR && rank != SHOAL_ARRAY) names.emplace_back("magnitude");
   if (rank == SHOAL_SYMMETRIC || rank == SHOAL_RANK_MATRIX) {
     names.emplace_back("trace");
     names.emplace_back("determinant");
@@ -67,7 +70,7 @@ FieldPart::FieldPart(const FieldInfo& field, std::string_view name, int dimensio
       dimensions_(dimensions),
       unit_(field.unit) {
   const std::string part = part_of(name);
-  std::vector<std::string> names = part_names(rank_, dimensions);
+  std::vector<std::string> names = part_names(rank_, dimensions, components_);
   if (part.empty() && rank_ == SHOAL_SCALAR) return;
   if (rank_ == SHOAL_SCALAR)
     throw ModelError("the field '" + field.name + "' is a number and has no '" + part + "'", place);
@@ -76,20 +79,21 @@ FieldPart::FieldPart(const FieldInfo& field, std::string_view name, int dimensio
     throw ModelError("'" + field.name + "' is more than one number here; choose one of " + join(names),
                      place);
   }
-  if (part == "magnitude") {
+  if (part == "magnitude" && rank_ != SHOAL_ARRAY) {
     how_ = How::magnitude;
     return;
   }
-  if (rank_ != SHOAL_RANK_VECTOR && part == "trace") {
+  const bool is_matrix = rank_ == SHOAL_SYMMETRIC || rank_ == SHOAL_RANK_MATRIX;
+  if (is_matrix && part == "trace") {
     how_ = How::trace;
     return;
   }
-  if (rank_ != SHOAL_RANK_VECTOR && part == "determinant") {
+  if (is_matrix && part == "determinant") {
     how_ = How::determinant;
     unit_ = unit_ == "1" ? "1" : "";
     return;
   }
-  const std::vector<Component> all = components_of(rank_, dimensions);
+  const std::vector<Component> all = components_of(rank_, dimensions, components_);
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (all[k].name != part) continue;
     component_ = static_cast<std::uint32_t>(k);

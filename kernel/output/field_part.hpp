@@ -23,8 +23,8 @@ std::string part_of(std::string_view name);
 /// Whether the name could mean a number of a particle, before it is known which fields there are.
 bool is_part_name(std::string_view name);
 
-/// The names of a field's parts: x, y, magnitude.
-std::vector<std::string> part_names(shoal_rank rank, int dimensions);
+/// The names of a field's parts: x, y, magnitude; c0, c1, ... of an array of n_components.
+std::vector<std::string> part_names(shoal_rank rank, int dimensions, std::uint32_t n_components);
 
 class FieldPart {
  public:

@@ -15,13 +15,14 @@
 
 namespace shoal::kernel {
 
-std::uint32_t components_of(shoal_rank rank, int dimensions) {
+std::uint32_t components_of(shoal_rank rank, int dimensions, std::uint32_t array_components) {
   const auto d = static_cast<std::uint32_t>(dimensions);
   switch (rank) {
     case SHOAL_SCALAR: return 1;
     case SHOAL_RANK_VECTOR: return d;
     case SHOAL_SYMMETRIC: return d * (d + 1) / 2;
     case SHOAL_RANK_MATRIX: return d * d;
+    case SHOAL_ARRAY: return array_components;
   }
   throw ModelError("unknown rank " + std::to_string(static_cast<int>(rank)) + " of a field");
 }
@@ -32,6 +33,7 @@ const char* name_of(shoal_rank rank) {
     case SHOAL_RANK_VECTOR: return "vector";
     case SHOAL_SYMMETRIC: return "symmetric matrix";
     case SHOAL_RANK_MATRIX: return "matrix";
+    case SHOAL_ARRAY: return "array";
   }
   return "unknown rank";
 }
@@ -40,15 +42,18 @@ const char* name_of(shoal_data_type type) { return type == SHOAL_INT64 ? "intege
 
 namespace {
 
+constexpr std::uint32_t max_array_components = 4096;
+
 std::string describe(const FieldSpecification& field) {
   std::string text = field.data_type == SHOAL_INT64 ? "an integer " : "a real ";
   text += name_of(field.rank);
+  if (field.rank == SHOAL_ARRAY) text += " of " + std::to_string(field.array_components) + " numbers";
   if (!field.unit.empty()) text += " in " + field.unit;
   return text;
 }
 
 bool same_kind(const FieldSpecification& a, const FieldSpecification& b) {
-  return a.rank == b.rank && a.data_type == b.data_type &&
+  return a.rank == b.rank && a.data_type == b.data_type && a.array_components == b.array_components &&
          (a.unit.empty() || b.unit.empty() || a.unit == b.unit);
 }
 
@@ -62,21 +67,26 @@ bool same_kind(const FieldSpecification& a, const FieldSpecification& b) {
 }  // namespace
 
 FieldSpecification specify(std::string_view name, std::uint32_t rank, std::uint32_t data_type,
-                           const char* unit, const char* doc, const std::string& declarer) {
+                           const char* unit, const char* doc, const std::string& declarer,
+                           std::uint32_t array_components) {
   const std::string quoted = "'" + std::string(name) + "'";
   if (name.empty()) throw ModelError(declarer + " declares a field without a name");
-  if (rank > SHOAL_RANK_MATRIX)
+  if (rank > SHOAL_ARRAY)
     throw ModelError(declarer + " declares field " + quoted + " with unknown rank " + std::to_string(rank));
+  if (rank == SHOAL_ARRAY && (array_components == 0 || array_components > max_array_components))
+    throw ModelError(declarer + " declares field " + quoted + " as an array of " +
+                     std::to_string(array_components) + " numbers; an array has 1 to " +
+                     std::to_string(max_array_components));
   if (data_type > SHOAL_INT64)
     throw ModelError(declarer + " declares field " + quoted + " with unknown data type " +
                      std::to_string(data_type));
-  FieldSpecification asked{std::string(name), static_cast<shoal_rank>(rank),
-                           static_cast<shoal_data_type>(data_type), unit != nullptr ? unit : "",
-                           doc != nullptr ? doc : ""};
+  FieldSpecification asked{
+      std::string(name),           static_cast<shoal_rank>(rank), static_cast<shoal_data_type>(data_type),
+      unit != nullptr ? unit : "", doc != nullptr ? doc : "",     rank == SHOAL_ARRAY ? array_components : 0};
   const SharedField* shared = find_shared_field(name);
   if (shared == nullptr) return asked;
-  FieldSpecification known{std::string(name), shared->rank, SHOAL_DOUBLE, std::string(shared->unit),
-                           std::string(shared->doc)};
+  FieldSpecification known{
+      std::string(name), shared->rank, SHOAL_DOUBLE, std::string(shared->unit), std::string(shared->doc), 0};
   if (!same_kind(known, asked)) clash(known, "all plugins (shoal/shared_fields.hpp)", asked, declarer);
   return known;
 }
@@ -86,7 +96,8 @@ void Field::Release::operator()(void* memory) const {
 }
 
 Field::Field(FieldSpecification specification, int dimensions, std::string declarer)
-    : specification_(std::move(specification)), components_(components_of(specification_.rank, dimensions)) {
+    : specification_(std::move(specification)),
+      components_(components_of(specification_.rank, dimensions, specification_.array_components)) {
   declarers_.push_back(std::move(declarer));
 }
 

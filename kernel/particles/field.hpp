@@ -19,17 +19,20 @@ struct FieldSpecification {
   shoal_rank rank = SHOAL_SCALAR;
   shoal_data_type data_type = SHOAL_DOUBLE;
   std::string unit, doc;
+  std::uint32_t array_components = 0;  ///< of a SHOAL_ARRAY
 };
 
-std::uint32_t components_of(shoal_rank rank, int dimensions);
-/// "scalar", "vector", "symmetric matrix", "matrix"
+/// `array_components`: of a SHOAL_ARRAY.
+std::uint32_t components_of(shoal_rank rank, int dimensions, std::uint32_t array_components = 0);
+/// "scalar", "vector", "symmetric matrix", "matrix", "array"
 const char* name_of(shoal_rank rank);
 const char* name_of(shoal_data_type type);
 
 /// The specification of a field that an operator names: from the shared table where it is there. Throws ModelError
 /// if rank, data type or unit contradict the table, or if unit is missing for a field of one's own.
 FieldSpecification specify(std::string_view name, std::uint32_t rank, std::uint32_t data_type,
-                           const char* unit, const char* doc, const std::string& declarer);
+                           const char* unit, const char* doc, const std::string& declarer,
+                           std::uint32_t array_components = 0);
 
 class Field {
  public:

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "kernel/particles/errors.hpp"
@@ -162,6 +163,16 @@ void copy_images(const Value* from, Value* to, const std::uint32_t* sources, std
   });
 }
 
+// Of any number of components, which all have eight bytes.
+void copy_array_images(Field& field, std::uint64_t first, const std::uint32_t* sources, std::uint64_t n) {
+  const std::uint64_t bytes = field.bytes_per_particle();
+  auto* values = static_cast<char*>(field.data());
+  for_each_range(n, [=](std::uint64_t begin, std::uint64_t end) {
+    for (std::uint64_t k = begin; k < end; ++k)
+      std::memcpy(values + (first + k) * bytes, values + sources[k] * bytes, bytes);
+  });
+}
+
 template <std::size_t N, class ComponentMap>
 void map_images(const double* from, double* to, const std::uint32_t* sources, const std::uint16_t* kinds,
                 const ComponentMap* maps, std::uint64_t n) {
@@ -179,10 +190,14 @@ void map_images(const double* from, double* to, const std::uint32_t* sources, co
 void Halo::renew(Field& field, std::uint64_t first) const {
   const std::uint64_t n = size();
   if (n == 0) return;
+  if (field.specification().rank == SHOAL_ARRAY) {
+    copy_array_images(field, first, sources_.data(), n);
+    return;
+  }
   const std::uint32_t components = field.components();
   const bool integers = field.specification().data_type == SHOAL_INT64;
-  const bool plain =
-      integers || field.specification().rank == SHOAL_SCALAR || (!mirrors_ && !is_point(field.name()));
+  const shoal_rank rank = field.specification().rank;
+  const bool plain = integers || rank == SHOAL_SCALAR || (!mirrors_ && !is_point(field.name()));
   const auto dispatch = [&](auto size) {
     constexpr std::size_t N = decltype(size)::value;
     if (integers) {

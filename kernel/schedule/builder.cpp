@@ -214,6 +214,7 @@ void Builder::attach(const char* loop, const char* stage, const shoal_operator* 
     copy.data_type = access.data_type;
     copy.unit = access.unit;
     copy.doc = access.doc;
+    copy.array_components = access.components;
     if (!copy.has(SHOAL_READ | SHOAL_WRITE | SHOAL_ACCUMULATE))
       throw ModelError(what + " neither reads nor writes nor accumulates its field '" + copy.field + "'");
     if (copy.has(SHOAL_NOT_OWN) && (copy.changes() || !copy.has(SHOAL_OF_NEIGHBOURS)))

@@ -39,6 +39,7 @@ struct Access {
   std::uint32_t data_type = SHOAL_DOUBLE;
   const char* unit = nullptr;
   const char* doc = nullptr;
+  std::uint32_t array_components = 0;
 
   bool has(std::uint32_t flags) const { return (mode & flags) != 0; }
   bool changes() const { return has(SHOAL_WRITE | SHOAL_ACCUMULATE); }

@@ -138,7 +138,7 @@ void Executor::bind(OperatorRun& op) {
   const auto view = [&](const Field* field, const Body& body, const Access& access) {
     shoal_field c;
     c.size = sizeof c;
-    c.components = components_of(static_cast<shoal_rank>(access.rank), dimensions_);
+    c.components = components_of(static_cast<shoal_rank>(access.rank), dimensions_, access.array_components);
     c.data = field != nullptr ? const_cast<void*>(field->data()) : nullptr;
     c.n_owned = body.n_owned();
     c.n_total = body.n_total();

@@ -47,6 +47,7 @@ shoal_neighbours Neighbourhood::view(std::uint32_t relation) const {
   c.indices = of.moved_indices.capacity() > 0 ? of.moved_indices.data() : of.list.indices();
   c.n_rows = of.list.n_rows();
   c.cutoff = of.cutoff;
+  c.generation = of.builds;
   return c;
 }
 

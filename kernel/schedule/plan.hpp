@@ -41,9 +41,10 @@ struct PlanLoop {
 struct PlanRelation {
   std::string body, neighbours;
   shoal_configuration configuration = SHOAL_CURRENT;
-  double cutoff = 0.0;              ///< m
-  double mean_neighbours = 0.0;     ///< 0 before the lists are built
-  double bytes_per_particle = 0.0;  ///< 0 before the lists are built
+  double cutoff = 0.0;                    ///< m
+  double mean_neighbours = 0.0;           ///< 0 before the lists are built
+  double bytes_per_particle = 0.0;        ///< with what operators keep; 0 before the lists are built
+  std::uint32_t kept_bytes_per_pair = 0;  ///< that operators keep beside the list
   std::uint64_t builds = 0;
 };
 
@@ -64,7 +65,8 @@ struct PlanBody {
   bool moves = false;  ///< re-sorted along cells
   std::vector<PlanField> fields;
   std::uint64_t field_bytes = 0;  ///< allocated
-  std::uint64_t list_bytes = 0;   ///< of the lists whose rows are this body's particles
+  std::uint64_t list_bytes =
+      0;  ///< of the lists whose rows are this body's particles, with what operators keep
 };
 
 struct Plan {

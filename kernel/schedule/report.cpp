@@ -58,8 +58,23 @@ PlanLoop describe(const LoopRun& loop, const Schedule& schedule,
   return text;
 }
 
-PlanRelation describe(const Relation& relation, const std::vector<std::unique_ptr<Body>>& bodies) {
+// What operators keep beside the list of a relation, for each of its entries.
+std::uint32_t kept_bytes_per_pair(const Schedule& schedule, std::size_t relation) {
+  std::uint32_t bytes = 0;
+  for (const auto& op : schedule.operators)
+    for (const std::uint32_t used : op->relations)
+      if (used == relation) bytes += op->c().bytes_per_pair;
+  return bytes;
+}
+
+std::uint64_t kept_bytes(const Relation& relation, std::uint32_t per_pair) {
+  return relation.builds > 0 ? per_pair * relation.list.offsets()[relation.list.n_rows()] : 0;
+}
+
+PlanRelation describe(const Relation& relation, const std::vector<std::unique_ptr<Body>>& bodies,
+                      std::uint32_t kept_bytes_per_pair) {
   PlanRelation text;
+  text.kept_bytes_per_pair = kept_bytes_per_pair;
   const Body& body = *bodies[relation.body];
   text.body = body.name();
   text.neighbours = bodies[relation.neighbours]->name();
@@ -69,7 +84,8 @@ PlanRelation describe(const Relation& relation, const std::vector<std::unique_pt
   if (relation.builds > 0 && body.n_owned() > 0) {
     const auto n = static_cast<double>(body.n_owned());
     text.mean_neighbours = static_cast<double>(relation.list.n_pairs()) / n;
-    text.bytes_per_particle = static_cast<double>(relation.bytes()) / n;
+    text.bytes_per_particle =
+        static_cast<double>(relation.bytes() + kept_bytes(relation, kept_bytes_per_pair)) / n;
   }
   return text;
 }
@@ -103,10 +119,14 @@ Plan Simulation::Implementation::plan() const {
     if (!stage->operators.empty()) plan.outside.push_back(describe(*stage, schedule, bodies));
   for (const LoopRun* loop : schedule.top) plan.loops.push_back(describe(*loop, schedule, bodies));
   plan.outer_step_renews = schedule.renews_in_outer_step ? schedule.outer_renewal : "";
-  for (const Relation& relation : neighbourhood.relations())
-    plan.relations.push_back(describe(relation, bodies));
+  const std::vector<Relation>& relations = neighbourhood.relations();
+  for (std::size_t k = 0; k < relations.size(); ++k)
+    plan.relations.push_back(describe(relations[k], bodies, kept_bytes_per_pair(schedule, k)));
   for (const auto& body : bodies) {
     plan.bodies.push_back(describe(*body, neighbourhood));
+    for (std::size_t k = 0; k < relations.size(); ++k)
+      if (relations[k].body == body->index())
+        plan.bodies.back().list_bytes += kept_bytes(relations[k], plan.relations[k].kept_bytes_per_pair);
     plan.particles += body->n_owned();
     plan.total_bytes += plan.bodies.back().field_bytes + plan.bodies.back().list_bytes;
   }

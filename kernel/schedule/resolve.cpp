@@ -255,8 +255,8 @@ class Resolver {
   }
 
   void declare(const Attachment& attachment, const Access& access, bool optional_ones) {
-    const FieldSpecification specification =
-        specify(access.field, access.rank, access.data_type, access.unit, access.doc, attachment.name);
+    const FieldSpecification specification = specify(access.field, access.rank, access.data_type, access.unit,
+                                                     access.doc, attachment.name, access.array_components);
     for_each_field(attachment, access, [&](std::uint32_t body) {
       // An optional field does not come into being, but must fit the one that is there.
       if (optional_ones && bodies_[body]->find(access.field) == nullptr) return;

@@ -36,6 +36,7 @@ struct Layout {
   int array_components = 1;
   std::array<int, 9> source{};
   std::array<const char*, 9> names{};
+  bool is_array = false;  // any number of components, as they stand, without names
 };
 
 constexpr std::array<const char*, 3> vector_names{"X", "Y", "Z"};
@@ -52,9 +53,14 @@ void add_component(Layout& layout, const char* name, bool exists, int source) {
   layout.names[c] = name;
 }
 
-Layout make_layout(std::uint32_t rank, int d) {
+Layout make_layout(std::uint32_t rank, int d, std::uint32_t components) {
   Layout layout;
   if (rank == SHOAL_SCALAR) return layout;
+  if (rank == SHOAL_ARRAY) {
+    layout.is_array = true;
+    layout.field_components = layout.array_components = static_cast<int>(components);
+    return layout;
+  }
   layout.array_components = 0;
   if (rank == SHOAL_RANK_VECTOR) {
     layout.field_components = d;
@@ -83,13 +89,13 @@ vtkSmartPointer<vtkDataArray> copy(const Layout& layout, std::uint64_t n, const 
   const int components = layout.array_components;
   array->SetNumberOfComponents(components);
   array->SetNumberOfTuples(static_cast<vtkIdType>(n));
-  if (components > 1)
+  if (components > 1 && !layout.is_array)
     for (int c = 0; c < components; ++c)
       array->SetComponentName(c, layout.names[static_cast<std::size_t>(c)]);
   Out* out = array->GetPointer(0);
   for (std::uint64_t i = 0; i < n; ++i, in += layout.field_components)
     for (int c = 0; c < components; ++c) {
-      const int source = layout.source[static_cast<std::size_t>(c)];
+      const int source = layout.is_array ? c : layout.source[static_cast<std::size_t>(c)];
       *out++ = source < 0 ? Out{} : static_cast<Out>(in[source]);
     }
   return array;
@@ -108,7 +114,7 @@ vtkSmartPointer<vtkDataArray> copy_integers(const Layout& layout, std::uint64_t 
 
 vtkSmartPointer<vtkDataArray> make_array(const shoal_snapshot_body& body, const shoal_snapshot_field& field,
                                          int dimensions, Precision precision) {
-  const Layout layout = make_layout(field.rank, dimensions);
+  const Layout layout = make_layout(field.rank, dimensions, field.components);
   const std::string place = std::string("field '") + field.name + "' of body '" + body.name + "'";
   if (static_cast<int>(field.components) != layout.field_components)
     throw std::invalid_argument(place + " has " + std::to_string(field.components) +
@@ -156,12 +162,12 @@ vtkSmartPointer<vtkPolyData> make_picture(const shoal_snapshot_body& body, int d
   const std::uint64_t n = body.n_particles;
 
   const vtkNew<vtkPoints> points;
-  points->SetData(copy_reals(make_layout(SHOAL_RANK_VECTOR, dimensions), n, body.position, precision));
+  points->SetData(copy_reals(make_layout(SHOAL_RANK_VECTOR, dimensions, 1), n, body.position, precision));
   picture->SetPoints(points);
   picture->SetVerts(make_vertices(n));
 
   auto* arrays = picture->GetPointData();
-  const auto id = copy_integers(make_layout(SHOAL_SCALAR, dimensions), n, body.id);
+  const auto id = copy_integers(make_layout(SHOAL_SCALAR, dimensions, 1), n, body.id);
   id->SetName("id");
   arrays->AddArray(id);
   for (const shoal_snapshot_field& field : fields_of(body)) {

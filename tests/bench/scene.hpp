@@ -47,7 +47,7 @@ class Scene {
       views.push_back({sizeof(shoal_field), components, field(access.field, components), n_, n_});
     }
     const shoal_neighbours lists{sizeof(shoal_neighbours), 0,  list_.offsets(), list_.counts(),
-                                 list_.indices(),          n_, cutoff};
+                                 list_.indices(),          n_, cutoff,          1};
     take(shoal_binding{sizeof(shoal_binding), 3, n_, views.data(), &lists, views.data()});
   }
 

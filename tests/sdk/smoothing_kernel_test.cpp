@@ -89,6 +89,24 @@ TEST_CASE("the first moment of the gradient is minus the identity") {
   });
 }
 
+TEST_CASE("the weight of fits is a smoothing kernel too") {
+  const auto check = [](auto kernel, auto d) {
+    CHECK(std::abs(integrate_ball<d()>(kernel, [&](double r) { return kernel.w(r); }) - 1) < 1e-12);
+    const double moment = integrate_ball<d()>(kernel, [&](double r) { return kernel.dw(r) * r; }) / d();
+    CHECK(std::abs(moment + 1) < 1e-12);
+    for (const double q : {0.1, 0.7, 1.3, 1.9}) {
+      const double r = q * kernel.h(), step = 1e-6 * kernel.h();
+      const double slope = (kernel.w(r + step) - kernel.w(r - step)) / (2 * step);
+      CHECK(kernel.dw(r) == doctest::Approx(slope).epsilon(1e-6).scale(kernel.w(0.0) / kernel.h()));
+      CHECK(kernel.dw_over_r(r) * r == doctest::Approx(kernel.dw(r)));
+    }
+    CHECK(kernel.w(kernel.cutoff()) == 0.0);
+    CHECK(kernel.w(Pack(0.4 * kernel.h()))[1] == doctest::Approx(kernel.w(0.4 * kernel.h())));
+  };
+  check(WendlandC6<2>(0.3), std::integral_constant<int, 2>{});
+  check(WendlandC6<3>(0.7), std::integral_constant<int, 3>{});
+}
+
 TEST_CASE("the Laguerre-Gauss kernel has no second moment, the others have") {
   for_all_dimensions([](auto kernel, auto kind, auto d) {
     const double h = kernel.h();

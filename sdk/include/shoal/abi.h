@@ -29,7 +29,7 @@ extern "C" {
 #endif
 
 #define SHOAL_ABI_MAJOR 1u
-#define SHOAL_ABI_MINOR 0u
+#define SHOAL_ABI_MINOR 1u
 #define SHOAL_ABI_MAGIC UINT64_C(0x494241204c414f48) /* the bytes "HOAL ABI" */
 
 // Whether the object that `pointer` points to is large enough to hold `member`.
@@ -169,7 +169,8 @@ typedef enum shoal_rank {
   SHOAL_SCALAR = 0,       // 1 component
   SHOAL_RANK_VECTOR = 1,  // D components, interleaved
   SHOAL_SYMMETRIC = 2,    // D (D + 1) / 2 components: xx, xy, yy  or  xx, xy, xz, yy, yz, zz
-  SHOAL_RANK_MATRIX = 3   // D x D components, row by row
+  SHOAL_RANK_MATRIX = 3,  // D x D components, row by row
+  SHOAL_ARRAY = 4  // as many independent numbers as the access says; images copy them as they are (since 1.1)
 } shoal_rank;
 
 typedef enum shoal_data_type { SHOAL_DOUBLE = 0, SHOAL_INT64 = 1 } shoal_data_type;
@@ -194,6 +195,9 @@ typedef struct shoal_access {
   const char* field;   // snake_case
   const char* unit;    // NULL for shared fields
   const char* doc;     // NULL for shared fields
+  // Since 1.1
+  uint32_t components;  // of a SHOAL_ARRAY, else 0
+  uint32_t reserved;
 } shoal_access;
 
 // A view of a field: valid in the call it is handed to and, if handed to bind, until the next bind.
@@ -217,6 +221,8 @@ typedef struct shoal_neighbours {
   const uint32_t* indices;
   uint64_t n_rows;
   double cutoff;
+  // Since 1.1
+  uint64_t generation;  // changes whenever the list is built anew
 } shoal_neighbours;
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -308,6 +314,9 @@ typedef struct shoal_operator {
   double (*time_step)(void* self, const shoal_step* step, const shoal_chunk* chunk);
   shoal_status (*save)(void* self, const shoal_stream* stream);  // [main]
   shoal_status (*load)(void* self, const shoal_stream* stream);  // [main]
+  // Since 1.1
+  uint32_t bytes_per_pair;  // that the operator keeps beside its neighbour lists, for `shoal plan`
+  uint32_t reserved;
 } shoal_operator;
 
 // ---------------------------------------------------------------------------------------------------------------

@@ -27,6 +27,10 @@ struct Scalar {};
 struct Vector {};
 struct Matrix {};
 struct Integer {};
+// N2 numbers in two dimensions, N3 in three, each on its own: an image at a mirror copies them as they are.
+// field[i] is a std::array<double, N>.
+template <int N2, int N3 = N2>
+struct Array {};
 
 // A particle of a run in D dimensions; indexes fields: `velocity[i]`.
 template <int D>
@@ -56,6 +60,10 @@ template <int D>
 struct Element<shoal::Integer, D> {
   using type = std::int64_t;
 };
+template <int N2, int N3, int D>
+struct Element<shoal::Array<N2, N3>, D> {
+  using type = std::array<double, static_cast<std::size_t>(D == 2 ? N2 : N3)>;
+};
 
 template <class T>
 inline constexpr shoal_rank rank_of = SHOAL_SCALAR;
@@ -63,6 +71,17 @@ template <>
 inline constexpr shoal_rank rank_of<shoal::Vector> = SHOAL_RANK_VECTOR;
 template <>
 inline constexpr shoal_rank rank_of<shoal::Matrix> = SHOAL_RANK_MATRIX;
+template <int N2, int N3>
+inline constexpr shoal_rank rank_of<shoal::Array<N2, N3>> = SHOAL_ARRAY;
+
+// Numbers of an array in two and in three dimensions; none of other types.
+struct ArraySize {
+  std::uint32_t in_2d = 0, in_3d = 0;
+};
+template <class T>
+inline constexpr ArraySize array_size{};
+template <int N2, int N3>
+inline constexpr ArraySize array_size<shoal::Array<N2, N3>>{N2, N3};
 
 inline constexpr std::size_t max_neighbour_bodies = 16;
 
@@ -101,10 +120,12 @@ class FieldMember {
   const char* name() const { return access_.field; }
   // Names another field of the same rank; before the operator is attached.
   void rename(const char* field) { access_.field = field; }
+  // Changes an option, e.g. of an operator of the SDK; before the operator is attached.
+  void apply(FieldOption option) { access_.mode = (access_.mode | option.set) & ~option.clear; }
 
  protected:
-  inline FieldMember(const char* field, std::uint32_t mode, shoal_rank rank, shoal_data_type type);
-  void apply(FieldOption option) { access_.mode = (access_.mode | option.set) & ~option.clear; }
+  inline FieldMember(const char* field, std::uint32_t mode, shoal_rank rank, shoal_data_type type,
+                     ArraySize array_size);
   void apply(Unit text) { access_.unit = text.text; }
   void apply(Doc text) { access_.doc = text.text; }
 
@@ -114,6 +135,7 @@ class FieldMember {
  private:
   friend class shoal::OperatorBase;
   shoal_access access_{};
+  ArraySize array_size_;
 };
 
 }  // namespace impl
@@ -148,7 +170,8 @@ class Field : public impl::FieldMember {
 
  protected:
   Field(const char* field, std::uint32_t mode)
-      : FieldMember(field, mode, impl::rank_of<T>, std::is_same_v<T, Integer> ? SHOAL_INT64 : SHOAL_DOUBLE) {}
+      : FieldMember(field, mode, impl::rank_of<T>, std::is_same_v<T, Integer> ? SHOAL_INT64 : SHOAL_DOUBLE,
+                    impl::array_size<T>) {}
 };
 
 // Reads a field; in pair operators of the particle and of its neighbours.
@@ -268,7 +291,10 @@ class OperatorBase : public Parameterised {
 
   std::vector<shoal_access> accesses() const {
     std::vector<shoal_access> list;
-    for (const auto* field : fields_) list.push_back(field->access_);
+    for (const auto* field : fields_) {
+      list.push_back(field->access_);
+      list.back().components = dimensions_ == 2 ? field->array_size_.in_2d : field->array_size_.in_3d;
+    }
     return list;
   }
   const std::vector<std::uint32_t>& reductions() const { return reductions_; }
@@ -296,8 +322,9 @@ class OperatorBase : public Parameterised {
 
 namespace impl {
 
-inline FieldMember::FieldMember(const char* field, std::uint32_t mode, shoal_rank rank,
-                                shoal_data_type type) {
+inline FieldMember::FieldMember(const char* field, std::uint32_t mode, shoal_rank rank, shoal_data_type type,
+                                ArraySize array_size)
+    : array_size_(array_size) {
   OperatorBase& owner = *OperatorBase::enrolling_;
   access_.size = sizeof(shoal_access);
   access_.mode = mode;
@@ -426,6 +453,7 @@ shoal_operator describe(std::unique_ptr<AttachedOperator<Op>> attached, std::uin
       return guarded([&] { op_of<Op>(self).load(*stream); });
     };
   }
+  if constexpr (requires(Op & op) { op.bytes_per_pair(); }) c.bytes_per_pair = attached->op.bytes_per_pair();
   c.self = attached.release();
   return c;
 }

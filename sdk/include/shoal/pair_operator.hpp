@@ -22,28 +22,32 @@
 //     static constexpr bool skips_lonely = true;
 // for operators whose `particle` changes nothing when the sum is zero: particles without neighbours are passed over,
 // which is most of them next to a wall.
+//     template <int D> using Kernel = WendlandC6<D>;
+// ties the operator to one smoothing kernel (with the target's smoothing length) and compiles it for that alone.
+//     static constexpr const char* pair_geometry = "reference_position";
+// takes distances from another field than `position`.
+//
+// Where pairs seldom change (static bodies, the reference configuration) what depends on them alone is worth keeping:
+//     auto store(const auto& p) const { return p.j(volume) * p.grad_W(); }
+//     auto pair(const auto& p, const auto& kept) const { return (p.j(f) - p.i(f)) * kept; }
+// `store` is evaluated once for each pair of a list, when its row is first met after the list was built, and its
+// result is kept beside the list: 8 bytes a pair for each number. It may read only what does not change until then.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <tuple>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
+#include "shoal/detail/kept_pairs.hpp"
 #include "shoal/operator.hpp"
 #include "shoal/pack.hpp"
 #include "shoal/smoothing_kernel.hpp"
 #include "shoal/vec.hpp"
 
 namespace shoal {
-
-// Several sums over the same neighbours, gathered in one pass.
-template <class... Values>
-struct Sums {
-  std::tuple<Values...> values;
-};
-template <class... Values>
-Sums<Values...> sums(Values... values) {
-  return {{values...}};
-}
 
 inline namespace SHOAL_ISA_NAMESPACE {
 namespace pair_loop {
@@ -127,6 +131,16 @@ class Pair {
   Mat<D, R> j(const Field<Matrix, Writable>& field) const {
     return gather_mat<D>(field.of_neighbours(relation_), j_);
   }
+  // All numbers of an array; those that are not used are not gathered.
+  template <int N2, int N3, bool Writable>
+  auto j(const Field<Array<N2, N3>, Writable>& field) const {
+    constexpr int n = D == 2 ? N2 : N3;
+    const double* values = field.of_neighbours(relation_);
+    return [&]<int... k>(std::integer_sequence<int, k...>) {
+      return std::array<R, n>{gather<n, k>(values, j_)...};
+    }
+    (std::make_integer_sequence<int, n>{});
+  }
 
  private:
   const Kernel& kernel_;
@@ -145,32 +159,104 @@ class PairOperator : public OperatorBase {
   // Packs of neighbours; what a run uses.
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {
-    with_kernel<D>(target().smoothing_kernel, smoothing_length(),
-                   [&](const auto& kernel) { rows<D, Pack>(kernel, chunk); });
+    with_own_kernel<D>([&](const auto& kernel) { rows<D, Pack>(kernel, chunk); });
   }
   // One neighbour after the other: the reference for tests.
   template <int D>
   void run_chunk_scalar(const shoal_chunk& chunk) const {
-    with_kernel<D>(target().smoothing_kernel, smoothing_length(),
-                   [&](const auto& kernel) { rows<D, double>(kernel, chunk); });
+    with_own_kernel<D>([&](const auto& kernel) { rows<D, double>(kernel, chunk); });
   }
 
   // W(0), a particle's own part of a sum of W.
   double self_W() const {
     double w = 0;
     const auto evaluate = [&](const auto& kernel) { w = kernel.w(0.0); };
-    dimensions() == 2 ? with_kernel<2>(target().smoothing_kernel, smoothing_length(), evaluate)
-                      : with_kernel<3>(target().smoothing_kernel, smoothing_length(), evaluate);
+    dimensions() == 2 ? with_own_kernel<2>(evaluate) : with_own_kernel<3>(evaluate);
     return w;
+  }
+
+  void bind(const shoal_binding& binding) {
+    OperatorBase::bind(binding);
+    if (!keeps_pairs()) return;
+    kept_.resize(n_relations());
+    for (std::size_t k = 0; k < n_relations(); ++k)
+      kept_[k].follow(neighbours(k), dimensions() == 2 ? kept_numbers<2>() : kept_numbers<3>());
+  }
+  // Bytes that the operator keeps for each pair, in the case's dimensions.
+  std::uint32_t bytes_per_pair() const {
+    return static_cast<std::uint32_t>(8 * (dimensions() == 2 ? kept_numbers<2>() : kept_numbers<3>()));
   }
 
  protected:
   PairOperator() : OperatorBase(true) {}
 
  private:
+  template <int D, class F>
+  decltype(auto) with_own_kernel(F&& f) const {
+    if constexpr (requires { typename Derived::template Kernel<D>; })
+      return std::forward<F>(f)(typename Derived::template Kernel<D>(smoothing_length()));
+    else
+      return with_kernel<D>(target().smoothing_kernel, smoothing_length(), std::forward<F>(f));
+  }
+
+  static constexpr const char* geometry() {
+    if constexpr (requires { Derived::pair_geometry; })
+      return Derived::pair_geometry;
+    else
+      return "position";
+  }
+
+  template <class P>
+  static constexpr bool stores = requires(const Derived& op, const P& p) {
+    op.store(p);
+  };
+  static constexpr bool keeps_pairs() { return stores<Pair<2, Pack, WendlandC2<2>>>; }
+  template <int D>
+  static constexpr int kept_numbers() {
+    using P = Pair<D, Pack, WendlandC2<D>>;
+    if constexpr (stores<P>)
+      return pair_loop::numbers<decltype(std::declval<const Derived&>().store(std::declval<const P&>()))>;
+    else
+      return 0;
+  }
+
+  // The value of one pack of pairs, with what is kept of them where the operator keeps something. `entry` is their
+  // place in the list.
+  template <class P>
+  auto value_of(const P& p, [[maybe_unused]] std::size_t k, [[maybe_unused]] std::uint64_t entry) const {
+    if constexpr (stores<P>) {
+      using Kept = decltype(self().store(p));
+      return self().pair(p, pair_loop::get<Kept>(kept_[k].at(entry, pair_loop::numbers<Kept>)));
+    } else {
+      return self().pair(p);
+    }
+  }
+
+  // Not inlined: what is kept must have the same bits in the pass that makes it and in those that load it, so it may
+  // not be contracted with what follows.
+  template <class R, int D, class Kernel>
+  [[gnu::noinline]] void fill_row(const Kernel& kernel, std::size_t k, Particle<D> i) const {
+    const shoal_neighbours& list = neighbours(k);
+    const std::uint64_t first = list.offsets[i.index];
+    const Vec<D> x_i = position_[i];
+    const double* x_of_neighbours = position_.of_neighbours(k);
+    constexpr auto step = static_cast<std::uint32_t>(RealTraits<R>::lanes);
+    for (std::uint32_t m = 0; m < list.counts[i.index]; m += step) {
+      const std::uint32_t* entry = list.indices + first + m;
+      const auto j = [&] {
+        if constexpr (std::is_same_v<R, double>)
+          return std::size_t{*entry};
+        else
+          return IndexPack::load(entry);
+      }();
+      const Pair<D, R, Kernel> p(kernel, k, i, x_i, x_of_neighbours, j);
+      pair_loop::put(self().store(p), kept_[k].at(first + m, kept_numbers<D>()));
+    }
+  }
+
   template <int D, class R, class Kernel>
   void rows(const Kernel& kernel, const shoal_chunk& chunk) const {
-    using Result = decltype(self().pair(std::declval<const Pair<D, R, Kernel>&>()));
+    using Result = decltype(value_of(std::declval<const Pair<D, R, Kernel>&>(), 0, 0));
     for (std::uint64_t index = chunk.begin; index < chunk.end; ++index) {
       if constexpr (requires { Derived::skips_lonely; })
         if (is_lonely(index)) continue;
@@ -188,14 +274,18 @@ class PairOperator : public OperatorBase {
     const std::uint32_t* row = list.indices + list.offsets[i.index];
     const Vec<D> x_i = position_[i];
     const double* x_of_neighbours = position_.of_neighbours(k);
+    const std::uint64_t first = list.offsets[i.index];
+    if constexpr (keeps_pairs())
+      if (kept_[k].begin_row(i.index, RealTraits<R>::lanes)) fill_row<R>(kernel, k, i);
     if constexpr (std::is_same_v<R, double>) {
-      for (std::uint32_t m = 0; m < n; ++m)
-        pair_loop::add_lanes(sum, self().pair(Pair<D, R, Kernel>(kernel, k, i, x_i, x_of_neighbours, row[m])),
-                             true);
+      for (std::uint32_t m = 0; m < n; ++m) {
+        const Pair<D, R, Kernel> p(kernel, k, i, x_i, x_of_neighbours, row[m]);
+        pair_loop::add_lanes(sum, value_of(p, k, first + m), true);
+      }
     } else {
       for (std::uint32_t m = 0; m < n; m += lanes) {
         const Pair<D, R, Kernel> p(kernel, k, i, x_i, x_of_neighbours, IndexPack::load(row + m));
-        pair_loop::add_lanes(sum, self().pair(p), first_lanes(static_cast<std::int64_t>(n) - m));
+        pair_loop::add_lanes(sum, value_of(p, k, first + m), first_lanes(static_cast<std::int64_t>(n) - m));
       }
     }
   }
@@ -208,7 +298,9 @@ class PairOperator : public OperatorBase {
 
   const Derived& self() const { return static_cast<const Derived&>(*this); }
 
-  In<Vector> position_{"position"};
+  In<Vector> position_{geometry()};
+  mutable std::vector<pair_loop::KeptPairs>
+      kept_;  // [relation]; rows are written by the thread that runs them
 };
 
 }  // namespace SHOAL_ISA_NAMESPACE

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "shoal/abi.h"
+#include "shoal/fit.hpp"
 #include "shoal/host.hpp"
 #include "shoal/material.hpp"
 #include "shoal/operator.hpp"

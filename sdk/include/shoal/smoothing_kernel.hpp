@@ -105,6 +105,45 @@ class WendlandC4 {
   double h_, per_h_, w_factor_, dw_factor_;
 };
 
+/// Wendland C6 (Wendland 1995, Dehnen and Aly 2012). Not among the names of a case: its narrow peak serves as the
+/// weight of least-squares fits (shoal/fit.hpp). With s = q / 2:
+///   W = a (1 - s)^8 (1 + 8s + 25 s^2 + 32 s^3),  s < 1,   a = 39 / (14 pi h^2) in 2D, 1365 / (512 pi h^3) in 3D
+template <int D>
+class WendlandC6 {
+ public:
+  static constexpr double support = 2.0;
+  constexpr explicit WendlandC6(double h)
+      : h_(h),
+        per_cutoff_(0.5 / h),
+        w_factor_((D == 2 ? 39.0 / 14.0 : 1365.0 / 512.0) * std::numbers::inv_pi * detail::per_volume<D>(h)),
+        dw_factor_(-22.0 * w_factor_ / (4.0 * h * h)) {}
+
+  constexpr double h() const { return h_; }
+  constexpr double cutoff() const { return support * h_; }
+
+  template <Real R>
+  R w(R r) const {
+    const R s = r * per_cutoff_;
+    const R t = max(0.0, 1.0 - s);
+    const R t2 = t * t, t4 = t2 * t2;
+    return w_factor_ * (t4 * t4) * (1.0 + s * (8.0 + s * (25.0 + 32.0 * s)));
+  }
+  template <Real R>
+  R dw_over_r(R r) const {
+    const R s = r * per_cutoff_;
+    const R t = max(0.0, 1.0 - s);
+    const R t2 = t * t;
+    return dw_factor_ * (t2 * t2 * t2 * t) * (1.0 + s * (7.0 + 16.0 * s));
+  }
+  template <Real R>
+  R dw(R r) const {
+    return r * dw_over_r(r);
+  }
+
+ private:
+  double h_, per_cutoff_, w_factor_, dw_factor_;
+};
+
 /// Cubic B-spline M4 (Monaghan and Lattanzio 1985). With (x)+ = max(0, x):
 ///   W = a [(2 - q)+^3 / 4 - (1 - q)+^3],   a = 10 / (7 pi h^2) in 2D, 1 / (pi h^3) in 3D
 template <int D>

@@ -62,7 +62,8 @@ struct Setup {
   double spacing = 0;
   double dt = 0;
   double time = 0;
-  bool scalar = false;  // one neighbour after the other
+  bool scalar = false;           // one neighbour after the other
+  std::uint64_t generation = 1;  // of the lists: another number tells the operator that they are new
 };
 
 namespace impl {
@@ -91,9 +92,10 @@ inline Rows all_pairs(Body& own, Body& other, double cutoff) {
   return rows;
 }
 
-inline std::uint32_t components_of(std::uint32_t rank, int dimensions) {
+inline std::uint32_t components_of(std::uint32_t rank, int dimensions, std::uint32_t array_components) {
   const auto d = static_cast<std::uint32_t>(dimensions);
-  return rank == SHOAL_SCALAR        ? 1
+  return rank == SHOAL_ARRAY         ? array_components
+         : rank == SHOAL_SCALAR      ? 1
          : rank == SHOAL_RANK_VECTOR ? d
          : rank == SHOAL_SYMMETRIC   ? d * (d + 1) / 2
                                      : d * d;
@@ -127,7 +129,7 @@ void run(Op& op, Body& own, std::vector<Body*> neighbours, const Setup& setup) {
   const auto accesses = op.accesses();
   std::vector<shoal_field> mine, theirs;
   const auto view = [](Body& body, const shoal_access& access) {
-    const std::uint32_t components = impl::components_of(access.rank, body.dimensions());
+    const std::uint32_t components = impl::components_of(access.rank, body.dimensions(), access.components);
     return shoal_field{sizeof(shoal_field), components, body.data(access.field, components), body.size(),
                        body.size()};
   };
@@ -140,7 +142,7 @@ void run(Op& op, Body& own, std::vector<Body*> neighbours, const Setup& setup) {
   }
   for (const impl::Rows& row : rows)
     lists.push_back({sizeof(shoal_neighbours), 0, row.offsets.data(), row.counts.data(), row.indices.data(),
-                     own.size(), target.cutoff});
+                     own.size(), target.cutoff, setup.generation});
   op.bind({sizeof(shoal_binding), own.dimensions(), own.size(), mine.data(), lists.data(), theirs.data()});
   if constexpr (requires { op.bound(); }) op.bound();
 

@@ -138,3 +138,30 @@ TEST_CASE("shared fields have one meaning") {
   CHECK(message_of([] { specify("x", 17, SHOAL_DOUBLE, "1", nullptr, "my.op"); }) ==
         "my.op declares field 'x' with unknown rank 17");
 }
+
+TEST_CASE("arrays hold as many numbers as they are declared with") {
+  Body body("tissue", 0, 2);
+  const FieldSpecification gates =
+      specify("gates", SHOAL_ARRAY, SHOAL_DOUBLE, "1", nullptr, "cell.gates", 19);
+  body.declare(gates, "cell.gates");
+  body.resize(3);
+  CHECK(body.find("gates")->components() == 19);
+  CHECK(body.find("gates")->bytes_per_particle() == 8 * 19);
+  CHECK(message_of([&] {
+          body.declare(specify("gates", SHOAL_ARRAY, SHOAL_DOUBLE, "1", nullptr, "other.op", 12), "other.op");
+        }) ==
+        "field 'gates' is a real array of 19 numbers in 1 for cell.gates, but a real array of 12 numbers in "
+        "1 for "
+        "other.op; give one of them another name, or make them agree");
+  CHECK(message_of([] { specify("x", SHOAL_ARRAY, SHOAL_DOUBLE, "1", nullptr, "my.op"); }) ==
+        "my.op declares field 'x' as an array of 0 numbers; an array has 1 to 4096");
+  double* values = body.find("gates")->reals();
+  for (std::size_t k = 0; k < 3 * 19; ++k) values[k] = static_cast<double>(k);
+  const std::uint32_t order[] = {2, 0, 1};
+  std::vector<double> scratch(3 * 19);
+  body.find("gates")->permute(order, 3, scratch.data());
+  for (std::size_t k = 0; k < 19; ++k) {
+    CHECK(body.find("gates")->reals()[k] == static_cast<double>(2 * 19 + k));
+    CHECK(body.find("gates")->reals()[19 + k] == static_cast<double>(k));
+  }
+}

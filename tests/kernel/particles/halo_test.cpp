@@ -209,6 +209,24 @@ TEST_CASE("images follow their sources between renewals") {
   CHECK(body.position().reals()[3] == 0.2);
 }
 
+TEST_CASE("images of arrays are copies, behind mirrors too") {
+  Domain domain;
+  domain.dimensions = 2;
+  domain.lower[1] = 0.0;
+  domain.boundary[1].lower = mirror;
+  Body body("b", 0, 2);
+  body.declare(specify("gates", SHOAL_ARRAY, SHOAL_DOUBLE, "1", nullptr, "cell", 5), "cell");
+  body.resize(2);
+  const double positions[] = {3.0, 0.5, 4.0, 0.05};
+  std::copy(std::begin(positions), std::end(positions), body.position().reals());
+  Field& gates = *body.find("gates");
+  for (std::size_t k = 0; k < 10; ++k) gates.reals()[k] = static_cast<double>(k) - 3.0;
+  body.build_halo(domain, 0.2);
+  body.renew_halo(gates);
+  REQUIRE(body.n_halo() == 1);
+  for (std::size_t k = 0; k < 5; ++k) CHECK(gates.reals()[10 + k] == gates.reals()[5 + k]);
+}
+
 TEST_CASE("a mirror in a domain narrower than the cut-off is refused") {
   const Domain domain = box(2, {-0.4, 0.7, 0.0}, {mirror, open, open});
   Body body("b", 0, 2);

@@ -36,6 +36,8 @@ struct Operator {
   std::vector<shoal_relation_request> relations;
   std::vector<std::uint32_t> reductions;
 
+  std::uint32_t bytes_per_pair = 0;
+
   std::function<shoal_status(const Views&)> bind;
   std::function<shoal_status(const shoal_step&)> begin;
   std::function<shoal_status(const Views&, const shoal_step&, const shoal_chunk&)> run;
@@ -46,7 +48,7 @@ struct Operator {
 
   Operator& access(const char* field, std::uint32_t mode, shoal_rank rank = SHOAL_SCALAR,
                    shoal_data_type type = SHOAL_DOUBLE) {
-    accesses.push_back({sizeof(shoal_access), mode, rank, type, field, nullptr, nullptr});
+    accesses.push_back({sizeof(shoal_access), mode, rank, type, field, nullptr, nullptr, 0, 0});
     return *this;
   }
   Operator& relation(std::uint32_t neighbours, double cutoff,
@@ -110,6 +112,7 @@ inline shoal_operator to_c(Operator op) {
     c.save = [](void* self, const shoal_stream* stream) { return of(self).op.save(*stream); };
     c.load = [](void* self, const shoal_stream* stream) { return of(self).op.load(*stream); };
   }
+  c.bytes_per_pair = kept.bytes_per_pair;
   return c;
 }
 

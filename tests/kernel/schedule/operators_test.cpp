@@ -358,6 +358,7 @@ TEST_CASE("timings count calls, particles and true pairs") {
   std::atomic<std::uint64_t> pairs = 0;
   op.name = "test.pairs";
   op.access("position", SHOAL_READ | SHOAL_OF_NEIGHBOURS, SHOAL_RANK_VECTOR).relation(0, 2.6);
+  op.bytes_per_pair = 16;
   op.run = [&](const Views& views, const shoal_step&, const shoal_chunk& chunk) {
     for (std::uint64_t i = chunk.begin; i < chunk.end; ++i) pairs += views.neighbours[0].counts[i];
     return SHOAL_OK;
@@ -376,5 +377,7 @@ TEST_CASE("timings count calls, particles and true pairs") {
   CHECK(timings.list_builds == 1);  // nothing has moved
   const Plan plan = run.plan();
   CHECK(plan.relations[0].mean_neighbours == doctest::Approx(static_cast<double>(pairs) / 8 / 400));
-  CHECK(plan.total_bytes > 400 * 2 * 8);
+  CHECK(plan.relations[0].kept_bytes_per_pair == 16);
+  CHECK(plan.bodies[0].list_bytes > 16 * pairs / 8);  // with what the operator keeps beside the list
+  CHECK(plan.total_bytes == plan.bodies[0].field_bytes + plan.bodies[0].list_bytes);
 }

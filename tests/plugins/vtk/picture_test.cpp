@@ -96,7 +96,7 @@ TEST_CASE("all arrays come back from the file") {
     const auto picture = write_and_read(body, setting);
     REQUIRE(picture != nullptr);
     REQUIRE(picture->GetNumberOfPoints() == static_cast<vtkIdType>(n));
-    CHECK(picture->GetPointData()->GetNumberOfArrays() == 6);
+    CHECK(picture->GetPointData()->GetNumberOfArrays() == 7);
 
     // `expected(particle, component)` is the number in the snapshot, or nothing where the picture has zero.
     const auto check = [&](vtkDataArray* array, int components, auto&& expected) {
@@ -128,6 +128,7 @@ TEST_CASE("all arrays come back from the file") {
       const int row = c / 3, column = c % 3;
       return row < d && column < d ? sample(i, row * d + column, 4) : std::nullopt;
     });
+    check(array("gates"), 11, [&](std::uint64_t i, int c) { return sample(i, c, 5); });
   }
 }
 
@@ -214,7 +215,7 @@ TEST_CASE("fields named position or id are not written twice") {
   body.add_integers("id");
   const auto picture = write_and_read(body, {2, 10, Precision::single, Compression::fast});
   REQUIRE(picture != nullptr);
-  CHECK(picture->GetPointData()->GetNumberOfArrays() == 6);
+  CHECK(picture->GetPointData()->GetNumberOfArrays() == 7);
   CHECK(picture->GetPointData()->GetArray("position") == nullptr);
   CHECK(static_cast<std::int64_t*>(picture->GetPointData()->GetArray("id")->GetVoidPointer(0))[0] ==
         body.id()[0]);

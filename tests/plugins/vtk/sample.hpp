@@ -23,6 +23,7 @@ namespace shoal::vtk::test {
 
 inline std::uint32_t components_of(shoal_rank rank, int d) {
   if (rank == SHOAL_SCALAR) return 1;
+  if (rank == SHOAL_ARRAY) return 11;
   if (rank == SHOAL_RANK_VECTOR) return static_cast<std::uint32_t>(d);
   if (rank == SHOAL_SYMMETRIC) return static_cast<std::uint32_t>(d * (d + 1) / 2);
   return static_cast<std::uint32_t>(d * d);
@@ -93,6 +94,7 @@ inline Body sample_body(const std::string& name, int dimensions, std::uint64_t n
   body.add("velocity", SHOAL_RANK_VECTOR, "m/s");
   body.add("stress", SHOAL_SYMMETRIC, "Pa");
   body.add("deformation_gradient", SHOAL_RANK_MATRIX, "1");
+  body.add("gates", SHOAL_ARRAY, "1");
   body.add_integers("inlet");
   return body;
 }
