@@ -101,10 +101,10 @@ TEST_CASE("the weight of fits is a smoothing kernel too") {
       CHECK(kernel.dw_over_r(r) * r == doctest::Approx(kernel.dw(r)));
     }
     CHECK(kernel.w(kernel.cutoff()) == 0.0);
-    CHECK(kernel.w(Pack(0.4 * kernel.h()))[1] == doctest::Approx(kernel.w(0.4 * kernel.h())));
+    CHECK(kernel.w(shoal::Pack(0.4 * kernel.h()))[1] == doctest::Approx(kernel.w(0.4 * kernel.h())));
   };
-  check(WendlandC6<2>(0.3), std::integral_constant<int, 2>{});
-  check(WendlandC6<3>(0.7), std::integral_constant<int, 3>{});
+  check(shoal::WendlandC6<2>(0.3), std::integral_constant<int, 2>{});
+  check(shoal::WendlandC6<3>(0.7), std::integral_constant<int, 3>{});
 }
 
 TEST_CASE("the Laguerre-Gauss kernel has no second moment, the others have") {
