@@ -51,10 +51,6 @@ std::vector<std::string> time_series(const std::filesystem::path& folder) {
   return files;
 }
 
-Place option_place(const std::string& text) {
-  return {std::make_shared<SourceText>(SourceText{text, {}}), 0, 0, 0};
-}
-
 }  // namespace
 
 Driver::Driver(const Options& options, Session& session, ResultFolder folder, Clock::time_point begin)

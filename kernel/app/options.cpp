@@ -58,8 +58,22 @@ void add_running(CLI::App& app, Options& options) {
       ->default_str("30 min");
 }
 
+void add_study(CLI::App& app, Options& options) {
+  app.add_option("--vary", options.vary,
+                 "Values of a parameter or key: --vary dx=0.1,0.05; more make a matrix")
+      ->required()
+      ->type_name("KEY=VALUE,...")
+      ->allow_extra_args(false);
+  app.add_option("--want", options.want,
+                 "Name the cheapest run within an error, of the first reference or of a probe: error=1%")
+      ->type_name("PROBE=ERROR");
+  app.add_option("-o,--output", options.output, "Folder of the study; ./results/NAME_study without it")
+      ->type_name("FOLDER");
+  app.add_flag("-f,--force", options.force, "Run all anew, also what has results");
+}
+
 struct Commands {
-  CLI::App *run, *check, *plan, *describe, *plugins, *resume, *schema;
+  CLI::App *run, *check, *plan, *study, *describe, *plugins, *resume, *schema;
 };
 
 Commands add_commands(CLI::App& app, Options& options) {
@@ -80,6 +94,11 @@ Commands add_commands(CLI::App& app, Options& options) {
   add_case(*c.plan, options);
   add_settings(*c.plan, options);
 
+  c.study = app.add_subcommand("study", "Run a case in all combinations of some values: error against cost");
+  add_case(*c.study, options);
+  add_study(*c.study, options);
+  add_settings(*c.study, options);
+
   c.resume = app.add_subcommand("resume", "Go on with a run from its newest checkpoint");
   c.resume->add_option("FOLDER", options.folder, "The results of the run")->required()->type_name("");
   add_settings(*c.resume, options);
@@ -92,7 +111,7 @@ Commands add_commands(CLI::App& app, Options& options) {
       ->type_name("");
   c.plugins = app.add_subcommand("plugins", "List the plugins that are found, or why they are not");
   c.schema = app.add_subcommand("schema", "Print the JSON schema of cases, for the completion of editors");
-  for (CLI::App* command : {c.run, c.check, c.plan, c.resume, c.describe, c.plugins, c.schema})
+  for (CLI::App* command : {c.run, c.check, c.plan, c.study, c.resume, c.describe, c.plugins, c.schema})
     add_common(*command, options);
   return c;
 }
@@ -115,10 +134,10 @@ std::optional<int> read_command_line(int argc, char** argv, Options& options) {
     return app.exit(error, std::cout, std::cerr) == 0 ? exit_done : exit_wrong_case;
   }
   const std::vector<std::pair<CLI::App*, Command>> all{
-      {commands.run, Command::run},         {commands.check, Command::check},
-      {commands.plan, Command::plan},       {commands.describe, Command::describe},
-      {commands.plugins, Command::plugins}, {commands.resume, Command::resume},
-      {commands.schema, Command::schema}};
+      {commands.run, Command::run},           {commands.check, Command::check},
+      {commands.plan, Command::plan},         {commands.study, Command::study},
+      {commands.describe, Command::describe}, {commands.plugins, Command::plugins},
+      {commands.resume, Command::resume},     {commands.schema, Command::schema}};
   for (const auto& [app_of_command, command] : all)
     if (app_of_command->parsed()) options.command = command;
   return std::nullopt;

@@ -14,7 +14,7 @@
 
 namespace shoal::kernel::app {
 
-enum class Command { run, check, plan, describe, plugins, resume, schema };
+enum class Command { run, check, plan, study, describe, plugins, resume, schema };
 
 struct Options {
   Command command = Command::run;
@@ -23,7 +23,7 @@ struct Options {
   bool allow_plugin_paths = false;
   std::vector<std::string> settings;  ///< --set KEY=VALUE
   int threads = 0;                    ///< 0: all
-  std::string case_file;              ///< run, check, plan
+  std::string case_file;              ///< run, check, plan, study
   std::filesystem::path folder;       ///< resume: of the results
   std::optional<std::filesystem::path> output;
   bool force = false;
@@ -32,6 +32,8 @@ struct Options {
   std::optional<std::uint64_t> steps;
   std::string checkpoint_every;    ///< wall time, with a unit
   std::vector<std::string> types;  ///< describe
+  std::vector<std::string> vary;   ///< study: KEY=VALUE,VALUE,...
+  std::string want;                ///< study: error=1%
 };
 
 /// Reads the command line. Where it asks for help or is wrong, prints that and gives the exit code instead.

@@ -101,9 +101,13 @@ void Session::build(const Options& options, bool quick) {
   recorder_->bind(run());
 }
 
+Place option_place(const std::string& text) {
+  return Place{std::make_shared<SourceText>(SourceText{text, {}}), 0, 0, 0};
+}
+
 double read_time(const std::string& option, const std::string& text) {
   Diagnostics diagnostics;
-  const Place place{std::make_shared<SourceText>(SourceText{"<" + option + " " + text + ">", {}}), 0, 0, 0};
+  const Place place = option_place("<" + option + " " + text + ">");
   const Node node = read_yaml_value(text, place, diagnostics);
   const std::optional<double> value = read_number(node, NumberRequest{"s", false}, Parameters{}, diagnostics);
   diagnostics.throw_if_errors();

@@ -51,6 +51,9 @@ class Session {
   std::unique_ptr<Recorder> recorder_;
 };
 
+/// Where something on the command line stands, for messages: an option with its value, or a path.
+Place option_place(const std::string& text);
+
 /// A time such as "30 min" of the command line, in s. Throws UserError.
 double read_time(const std::string& option, const std::string& text);
 

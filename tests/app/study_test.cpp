@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Studies: the matrix of runs, orders and the front from errors that are known, going on after a stop, and runs that
+// fail beside runs that do not.
+#include <array>
+#include <cmath>
+
+#include "tests/app/support.hpp"
+
+using namespace app_test;
+
+namespace {
+
+// The probe is 1 + factor dx^order, whatever the grains do; so the error of its reference is known.
+std::string known_error(const std::string& more = "") {
+  std::string text = grains(
+      "probes:\n  height: {maximum: {of: \"1 + factor*dx^power + 0*position.x\", body: pile}, every: 10 ms}\n"
+      "reference:\n  - {probe: height, exact: 1, error: max, scale: 1, tolerance: 1}\n" +
+      more);
+  const std::string parameters = "parameters: {dx: 0.1}";
+  text.replace(text.find(parameters), parameters.size(), "parameters: {dx: 0.1, power: 2, factor: 1}");
+  return text;
+}
+
+std::vector<std::vector<std::string>> csv(const std::filesystem::path& path) {
+  std::vector<std::vector<std::string>> all;
+  std::istringstream stream(read(path));
+  for (std::string line; std::getline(stream, line);) {
+    all.emplace_back(1);
+    for (const char c : line)
+      if (c == ',')
+        all.back().emplace_back();
+      else
+        all.back().back() += c;
+  }
+  return all;
+}
+
+std::size_t column(const std::vector<std::vector<std::string>>& table, const std::string& name) {
+  const auto at = std::find(table[0].begin(), table[0].end(), name);
+  REQUIRE(at != table[0].end());
+  return static_cast<std::size_t>(at - table[0].begin());
+}
+
+}  // namespace
+
+TEST_CASE("a study runs all combinations and finds the orders of known errors") {
+  std::filesystem::remove_all("orders");
+  write("pile.yaml", known_error());
+  const Result result = shoal({"study", "pile.yaml", "--vary", "power=1,2", "--vary", "dx=0.2,0.1,0.05", "-o",
+                               "orders", "--want", "height=1.5%"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const auto table = csv("orders/study.csv");
+  REQUIRE(table.size() == 7);
+  const std::size_t error = column(table, "height max error"), order = column(table, "height max order");
+  for (std::size_t k = 1; k < 7; ++k) {
+    const double power = k < 4 ? 1 : 2, dx = std::array{0.2, 0.1, 0.05}[(k - 1) % 3];
+    CHECK(table[k][column(table, "dx")] == std::array{"0.2", "0.1", "0.05"}[(k - 1) % 3]);
+    CHECK(table[k][column(table, "status")] == "finished");
+    CHECK(std::stod(table[k][error]) == doctest::Approx(std::pow(dx, power)));
+    if ((k - 1) % 3 == 0)
+      CHECK(table[k][order].empty());
+    else
+      CHECK(std::stod(table[k][order]) == doctest::Approx(power).epsilon(1e-6));
+  }
+  CHECK(table[3][column(table, "spacing [m]")] == "0.05");
+  CHECK(contains(result.out, "2.00"));
+  // Only dx^2 meets 1.5 %, at 0.1 and at 0.05; the coarser run is the cheaper one.
+  CHECK(contains(result.out, "cheapest with height max within 1.5 %: power=2_dx=0.1 ("));
+  CHECK(contains(read("orders/study.gnuplot"), "order 2"));
+  CHECK(std::filesystem::exists("orders/runs/power=1_dx=0.05/case.yaml"));
+}
+
+TEST_CASE("a study goes on where it was, and does not mix cases") {
+  std::filesystem::remove_all("again");
+  write("pile.yaml", known_error());
+  REQUIRE(shoal({"study", "pile.yaml", "--vary", "dx=0.2,0.1", "-o", "again"}).code == 0);
+  const auto written = std::filesystem::last_write_time("again/runs/dx=0.2/summary.json");
+  const Result more = shoal({"study", "pile.yaml", "--vary", "dx=0.2,0.1,0.05", "-o", "again"});
+  REQUIRE(more.code == 0);
+  CHECK(contains(more.out, "1/3  dx=0.2  finished already"));
+  CHECK(contains(more.out, "3/3  dx=0.05  finished in"));
+  CHECK(std::filesystem::last_write_time("again/runs/dx=0.2/summary.json") == written);
+  CHECK(csv("again/study.csv").size() == 4);
+
+  write("pile.yaml", known_error() + "# changed\n");
+  const Result changed = shoal({"study", "pile.yaml", "--vary", "dx=0.2", "-o", "again"});
+  CHECK(changed.code == 2);
+  CHECK(contains(changed.err,
+                 "again/runs/dx=0.2: error: it holds results of another case, of other settings, or of "
+                 "another version"));
+  CHECK(contains(changed.err, "replace them with --force"));
+  CHECK(shoal({"study", "pile.yaml", "--vary", "dx=0.2", "-o", "again", "--force"}).code == 0);
+}
+
+TEST_CASE("a run that is stopped is resumed") {
+  std::filesystem::remove_all("stopped");
+  write("pile.yaml", known_error());
+  REQUIRE(shoal({"study", "pile.yaml", "--vary", "dx=0.2", "-o", "stopped"}).code == 0);
+  const std::string whole = read("stopped/runs/dx=0.2/probes/height.csv");
+  // The same run, left in the middle with a checkpoint.
+  REQUIRE(shoal({"run", "pile.yaml", "--set", "dx=0.2", "-o", "stopped/runs/dx=0.2", "--force", "--until",
+                 "0.05"})
+              .code == 0);
+  const Result result = shoal({"study", "pile.yaml", "--vary", "dx=0.2", "-o", "stopped"});
+  CHECK(result.code == 0);
+  CHECK(contains(result.out, "dx=0.2  finished in"));
+  CHECK(contains(read("stopped/runs/dx=0.2.log"), "50 ms to 0.1 s"));
+  CHECK(read("stopped/runs/dx=0.2/probes/height.csv") == whole);
+}
+
+TEST_CASE("a run that fails is a line of the table, and the others are kept") {
+  std::filesystem::remove_all("failing");
+  write("pile.yaml", known_error());
+  const Result result =
+      shoal({"study", "pile.yaml", "--vary", "physics.0.grains.falling.breakdown=0.05,10", "-o", "failing"});
+  CHECK(result.code == 3);
+  const auto table = csv("failing/study.csv");
+  REQUIRE(table.size() == 3);
+  CHECK(table[1][column(table, "status")] == "failed");
+  CHECK(table[2][column(table, "status")] == "finished");
+  CHECK(contains(result.err, "warning: breakdown=0.05: "));
+}
+
+TEST_CASE("what a study is asked is checked before anything runs") {
+  std::filesystem::remove_all("asked");
+  write("pile.yaml", known_error());
+  const auto complaint = [](const std::vector<std::string>& words) {
+    std::vector<std::string> arguments{"study", "pile.yaml", "-o", "asked"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    const Result result = shoal(arguments);
+    CHECK(result.code == 2);
+    return result.err;
+  };
+  CHECK(contains(complaint({"--vary", "dx"}), "<--vary dx>: error: it does not say KEY=VALUE,VALUE,..."));
+  CHECK(contains(complaint({"--vary", "dx=0.1,"}),
+                 "<--vary dx=0.1,>: error: one of the values of 'dx' is empty"));
+  CHECK(contains(complaint({"--vary", "dx=0.1,0.1"}), "two values of 'dx' are the same"));
+  CHECK(contains(complaint({"--vary", "dy=0.1"}), "dy"));
+  CHECK(contains(complaint({"--vary", "dx=0.1", "--want", "1%"}),
+                 "<--want 1%>: error: it does not say what error is wanted"));
+  CHECK(contains(complaint({}), "--vary is required"));
+  CHECK_FALSE(std::filesystem::exists("asked"));
+}
