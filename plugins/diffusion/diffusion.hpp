@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// diffusion.diffusion: C dc/dt = div(K grad c) + sources, for one or several fields c on one or several bodies.
+//
+//   loop diffusion          before     the first half of what is split off the diffusion (reactions)
+//                           diffuse
+//     loop diffusion_of_c   rate       everything that adds to <c>_rate
+//                           update     one stage of the time integration
+//                           after      the second half
+//
+// Reactions attach to `before` and `after`, each for half of the loop's step: Strang splitting, second order.
+#pragma once
+
+#include "medium.hpp"
+#include "shoal/physics.hpp"
+
+namespace shoal::diffusion {
+
+struct Diffusion final : Physics {
+  Param<std::vector<BodyIndex>> bodies{
+      "bodies", nullptr,
+      "Bodies in which the fields diffuse; through each other's surfaces where they touch.",
+      example("[plate, coating]")};
+  Param<std::vector<FieldName>> fields{"fields", nullptr, "Fields that diffuse, each by itself.",
+                                       default_to("[temperature]"), example("[oxygen, carbon_dioxide]")};
+  Param<ObjectHandle> medium{"medium",
+                             nullptr,
+                             "Medium of the bodies whose material is of another plugin, e.g. of a fluid that "
+                             "carries the fields along.",
+                             ObjectsOf{SHOAL_TYPE_MATERIAL},
+                             optional,
+                             example("{diffusion.medium: {diffusivity: 1e-7}}")};
+  Param<std::string> inside{
+      "inside", nullptr,
+      "Loop and stage of another plugin in which the loop of diffusion runs, for fields that a moving body "
+      "carries along.",
+      optional, example("advection/forces")};
+  Param<double> cfl{"cfl", "1", "Step over the largest one that is known to be stable.", positive,
+                    default_to(1.0)};
+
+  void build(const Builder& builder);
+};
+
+}  // namespace shoal::diffusion
