@@ -10,12 +10,15 @@
 
 #include "kernel/plugins/abi_reading.hpp"
 #include "shoal/abi.h"
+#include "shoal/interfaces/equation_of_state.h"
+#include "shoal/interfaces/stress_law.h"
 
 #define SIZE(struct_, bytes_) static_assert(sizeof(struct_) == (bytes_));
 #define MEMBER(struct_, member_, offset_, bytes_)         \
   static_assert(offsetof(struct_, member_) == (offset_)); \
   static_assert(sizeof(struct_::member_) == (bytes_));
 #define VALUE(name_, value_) static_assert((name_) == (value_));
+#include "interfaces.inc"
 #include "layout.inc"
 #undef SIZE
 #undef MEMBER
@@ -30,6 +33,7 @@ TEST_CASE("every struct that crosses the boundary begins with its size, but for 
 #define MEMBER(struct_, member_, offset_, bytes_) \
   if (std::string(#member_) == "size") CHECK((offset_) == (std::string(#struct_) == "shoal_stamp" ? 8 : 0));
 #define VALUE(name_, value_)
+#include "interfaces.inc"
 #include "layout.inc"
 #undef SIZE
 #undef MEMBER
@@ -43,6 +47,7 @@ TEST_CASE("members fill their structs without hidden gaps, so that every byte is
   CHECK_MESSAGE(end[#struct_] == (offset_), #struct_ "::" #member_); \
   end[#struct_] = (offset_) + (bytes_);
 #define VALUE(name_, value_)
+#include "interfaces.inc"
 #include "layout.inc"
 #undef SIZE
 #undef MEMBER
@@ -50,6 +55,7 @@ TEST_CASE("members fill their structs without hidden gaps, so that every byte is
 #define SIZE(struct_, bytes_) CHECK_MESSAGE(end[#struct_] == (bytes_), #struct_);
 #define MEMBER(struct_, member_, offset_, bytes_)
 #define VALUE(name_, value_)
+#include "interfaces.inc"
 #include "layout.inc"
 }
 

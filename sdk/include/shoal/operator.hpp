@@ -126,6 +126,8 @@ class FieldMember {
  protected:
   inline FieldMember(const char* field, std::uint32_t mode, shoal_rank rank, shoal_data_type type,
                      ArraySize array_size);
+  // Of the operator `owner`, whenever it is made; see declared_fields.hpp.
+  inline FieldMember(OperatorBase& owner, const shoal_access& access);
   void apply(Unit text) { access_.unit = text.text; }
   void apply(Doc text) { access_.doc = text.text; }
 
@@ -332,6 +334,10 @@ inline FieldMember::FieldMember(const char* field, std::uint32_t mode, shoal_ran
   access_.rank = rank;
   access_.data_type = type;
   access_.field = field;
+  owner.fields_.push_back(this);
+}
+
+inline FieldMember::FieldMember(OperatorBase& owner, const shoal_access& access) : access_(access) {
   owner.fields_.push_back(this);
 }
 

@@ -39,6 +39,10 @@ inline constexpr std::array shared_fields{
     SharedField{"signed_distance", SHOAL_SCALAR, "m", "Distance to the body's surface, negative inside."},
     SharedField{"smoothing_length", SHOAL_SCALAR, "m", "Smoothing length where it varies between particles."},
     SharedField{"deformation_gradient", SHOAL_RANK_MATRIX, "1", "Deformation gradient F."},
+    SharedField{"fibre", SHOAL_RANK_VECTOR, "1",
+                "Unit direction of the fibres in the reference configuration."},
+    SharedField{"sheet", SHOAL_RANK_VECTOR, "1",
+                "Unit direction in the sheets, across the fibres, in the reference configuration."},
 };
 
 constexpr const SharedField* find_shared_field(std::string_view name) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "shoal/abi.h"
+#include "shoal/declared_fields.hpp"
 #include "shoal/fit.hpp"
 #include "shoal/host.hpp"
 #include "shoal/material.hpp"
