@@ -44,14 +44,14 @@ typedef struct shoal_stress_block {
   double* out_of_plane_stretch;  // F33; of blocks in the plane
 } shoal_stress_block;
 
-// Of the undeformed material. Anisotropic laws give the largest speed of all directions.
+// Of the undeformed material.
 typedef struct shoal_elastic_constants {
   uint32_t size;
   uint32_t reserved;
   double density;             // of the reference configuration, kg/m3
   double bulk_modulus;        // Pa
   double shear_modulus;       // Pa; a typical one of an anisotropic law
-  double longitudinal_speed;  // m/s; in plane stress that of a plate
+  double longitudinal_speed;  // m/s, the largest of all directions; in plane stress that of a plate
   double shear_speed;         // m/s
 } shoal_elastic_constants;
 
