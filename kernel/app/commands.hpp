@@ -13,6 +13,7 @@ int resume_case(const Options& options);
 int check_case_file(const Options& options);
 int plan_case(const Options& options);
 int study_case(const Options& options);
+int write_report(const Options& options);
 int describe(const Options& options);
 int list_plugins(const Options& options);
 int print_schema(const Options& options);

@@ -22,6 +22,7 @@ int execute(const Options& options) {
     case Command::check: return check_case_file(options);
     case Command::plan: return plan_case(options);
     case Command::study: return study_case(options);
+    case Command::report: return write_report(options);
     case Command::describe: return describe(options);
     case Command::plugins: return list_plugins(options);
     case Command::schema: return print_schema(options);

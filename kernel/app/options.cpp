@@ -59,9 +59,10 @@ void add_running(CLI::App& app, Options& options) {
 }
 
 void add_study(CLI::App& app, Options& options) {
-  app.add_option("--vary", options.vary,
-                 "Values of a parameter or key: --vary dx=0.1,0.05; more make a matrix")
-      ->required()
+  app.add_option(
+         "--vary", options.vary,
+         "Values of a parameter or key: --vary dx=0.1,0.05; more make a matrix. Without it, those that the "
+         "case names under 'study'")
       ->type_name("KEY=VALUE,...")
       ->allow_extra_args(false);
   app.add_option("--want", options.want,
@@ -72,8 +73,21 @@ void add_study(CLI::App& app, Options& options) {
   app.add_flag("-f,--force", options.force, "Run all anew, also what has results");
 }
 
+void add_report(CLI::App& app, Options& options) {
+  app.add_option("CASES", options.cases, "Cases, or folders of cases; ./cases without it")->type_name("");
+  app.add_option("-o,--output", options.output, "Folder of the report; ./docs/report without it")
+      ->type_name("FOLDER");
+  app.add_option("--results", options.folder, "Folder of the studies; what is there is not run again")
+      ->type_name("FOLDER")
+      ->default_str("results/report");
+  app.add_option("--threads", options.threads, "Threads to compute with; all of the machine without it")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  app.add_flag("-f,--force", options.force, "Run all anew, also what has results");
+}
+
 struct Commands {
-  CLI::App *run, *check, *plan, *study, *describe, *plugins, *resume, *schema;
+  CLI::App *run, *check, *plan, *study, *report, *describe, *plugins, *resume, *schema;
 };
 
 Commands add_commands(CLI::App& app, Options& options) {
@@ -99,6 +113,9 @@ Commands add_commands(CLI::App& app, Options& options) {
   add_study(*c.study, options);
   add_settings(*c.study, options);
 
+  c.report = app.add_subcommand("report", "Study cases and write a report: error, cost, pictures, plans");
+  add_report(*c.report, options);
+
   c.resume = app.add_subcommand("resume", "Go on with a run from its newest checkpoint");
   c.resume->add_option("FOLDER", options.folder, "The results of the run")->required()->type_name("");
   add_settings(*c.resume, options);
@@ -111,7 +128,8 @@ Commands add_commands(CLI::App& app, Options& options) {
       ->type_name("");
   c.plugins = app.add_subcommand("plugins", "List the plugins that are found, or why they are not");
   c.schema = app.add_subcommand("schema", "Print the JSON schema of cases, for the completion of editors");
-  for (CLI::App* command : {c.run, c.check, c.plan, c.study, c.resume, c.describe, c.plugins, c.schema})
+  for (CLI::App* command :
+       {c.run, c.check, c.plan, c.study, c.report, c.resume, c.describe, c.plugins, c.schema})
     add_common(*command, options);
   return c;
 }
@@ -134,10 +152,11 @@ std::optional<int> read_command_line(int argc, char** argv, Options& options) {
     return app.exit(error, std::cout, std::cerr) == 0 ? exit_done : exit_wrong_case;
   }
   const std::vector<std::pair<CLI::App*, Command>> all{
-      {commands.run, Command::run},           {commands.check, Command::check},
-      {commands.plan, Command::plan},         {commands.study, Command::study},
-      {commands.describe, Command::describe}, {commands.plugins, Command::plugins},
-      {commands.resume, Command::resume},     {commands.schema, Command::schema}};
+      {commands.run, Command::run},         {commands.check, Command::check},
+      {commands.plan, Command::plan},       {commands.study, Command::study},
+      {commands.report, Command::report},   {commands.describe, Command::describe},
+      {commands.plugins, Command::plugins}, {commands.resume, Command::resume},
+      {commands.schema, Command::schema}};
   for (const auto& [app_of_command, command] : all)
     if (app_of_command->parsed()) options.command = command;
   return std::nullopt;

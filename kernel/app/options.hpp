@@ -14,7 +14,7 @@
 
 namespace shoal::kernel::app {
 
-enum class Command { run, check, plan, study, describe, plugins, resume, schema };
+enum class Command { run, check, plan, study, report, describe, plugins, resume, schema };
 
 struct Options {
   Command command = Command::run;
@@ -24,7 +24,7 @@ struct Options {
   std::vector<std::string> settings;  ///< --set KEY=VALUE
   int threads = 0;                    ///< 0: all
   std::string case_file;              ///< run, check, plan, study
-  std::filesystem::path folder;       ///< resume: of the results
+  std::filesystem::path folder;       ///< resume: of the results; report: of the studies
   std::optional<std::filesystem::path> output;
   bool force = false;
   bool strict = false;
@@ -32,6 +32,7 @@ struct Options {
   std::optional<std::uint64_t> steps;
   std::string checkpoint_every;    ///< wall time, with a unit
   std::vector<std::string> types;  ///< describe
+  std::vector<std::string> cases;  ///< report: cases and folders
   std::vector<std::string> vary;   ///< study: KEY=VALUE,VALUE,...
   std::string want;                ///< study: error=1%
 };

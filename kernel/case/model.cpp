@@ -98,6 +98,7 @@ class CaseReader {
     values.vector("gravity", context_.dimensions, model.gravity);
     model.physics = values.objects("physics");
     model.outputs = values.objects("output");
+    model.study = values.texts("study");
     model.smoothing = section("smoothing");
     read_domain();
     read_bodies();

@@ -240,6 +240,9 @@ const std::vector<shoal_parameter>& case_rows() {
           "{front: {maximum: {of: position.x, body: water}, every: 5 ms}}"),
       row(kind_listed_items, "reference", nullptr, 0, nullptr, "What probes are compared with.",
           "[{probe: front, data: front.csv, tolerance: 5 %}]"),
+      row(SHOAL_TEXT, "study", nullptr, list, "[]",
+          "What `shoal study` and `shoal report` vary where the command line does not: KEY=VALUE,VALUE,...",
+          "[\"dx=$H/20,$H/40,$H/80\"]"),
   };
   return rows;
 }

@@ -29,8 +29,8 @@ void flatten(const Node& node, const std::string& path, Flat& flat) {
 }
 
 bool is_physics(const std::string& path) {
-  static const std::array<std::string, 7> others{
-      "title", "run.end", "run.checkpoint_every", "output", "probes", "reference", "plugins"};
+  static const std::array<std::string, 8> others{
+      "title", "run.end", "run.checkpoint_every", "output", "probes", "reference", "plugins", "study"};
   return std::none_of(others.begin(), others.end(), [&](const std::string& other) {
     return path == other || path.rfind(other + ".", 0) == 0 || path.rfind(other + "[", 0) == 0;
   });

@@ -141,6 +141,47 @@ TEST_CASE("what a study is asked is checked before anything runs") {
   CHECK(contains(complaint({"--vary", "dy=0.1"}), "dy"));
   CHECK(contains(complaint({"--vary", "dx=0.1", "--want", "1%"}),
                  "<--want 1%>: error: it does not say what error is wanted"));
-  CHECK(contains(complaint({}), "--vary is required"));
   CHECK_FALSE(std::filesystem::exists("asked"));
+}
+
+TEST_CASE("a case may say what a study varies") {
+  std::filesystem::remove_all("named");
+  write("pile.yaml", known_error("study: [\"dx=0.2,0.1\"]\n"));
+  const Result result = shoal({"study", "pile.yaml", "-o", "named"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const auto table = csv("named/study.csv");
+  REQUIRE(table.size() == 3);
+  CHECK(std::stod(table[2][column(table, "height max order")]) == doctest::Approx(2.0));
+  // The command line comes first.
+  std::filesystem::remove_all("named");
+  REQUIRE(shoal({"study", "pile.yaml", "-o", "named", "--vary", "power=3"}).code == 0);
+  CHECK(csv("named/study.csv").size() == 2);
+}
+
+TEST_CASE("a report holds what its cases give, and runs nothing twice") {
+  std::filesystem::remove_all("report");
+  std::filesystem::remove_all("studies");
+  std::filesystem::create_directories("cases/soft");
+  write("cases/soft/pile.yaml", "# Grains with a known error.\n" + known_error("study: [\"dx=0.2,0.1\"]\n"));
+  write("cases/soft/broken.yaml",
+        grains("", "bodies: [pile], breakdown: 0.05"));  // fails, and has no reference
+  const std::vector<std::string> words{"report", "cases", "-o", "report", "--results", "studies"};
+  const Result result = shoal(words);
+  INFO(result.err);
+  CHECK(result.code == 3);
+  const std::string page = read("report/report.md");
+  CHECK(contains(page, "## soft/pile: Falling grains\n\nGrains with a known error.\n\nPlugins: grains"));
+  CHECK(contains(page, "| 0.1 | finished | 200 |"));
+  CHECK(contains(page, "| 1.0 % | 100 % | 2.00 |"));
+  CHECK(contains(page, "The study ended with exit code 3 (a run failed)."));
+  CHECK(contains(page, "grains.repulsion"));
+  const std::string html = read("report/report.html");
+  CHECK(contains(html, "<td>2.00</td>"));
+  CHECK_FALSE(contains(html, "<img"));  // it holds everything itself
+  CHECK(std::filesystem::exists("report/soft_pile_error_against_spacing.svg") == contains(html, "<svg"));
+  const auto written = std::filesystem::last_write_time("studies/soft_pile/runs/dx=0.1/summary.json");
+  CHECK(shoal(words).code == 3);
+  CHECK(std::filesystem::last_write_time("studies/soft_pile/runs/dx=0.1/summary.json") == written);
+  CHECK(shoal({"report", "nowhere"}).code == 2);
 }

@@ -46,11 +46,11 @@ std::optional<Wish> read_wish(const std::string& text) {
 class StudyDriver {
  public:
   explicit StudyDriver(const Options& options) : options_(options), wish_(read_wish(options.want)) {
-    for (const std::string& text : options.vary) study_.variations.push_back(read_variation(text));
-    runs_ = matrix(study_.variations);
     folder_ = options.output ? *options.output
                              : std::filesystem::path("results") / (case_name(options.case_file) + "_study");
     text_of_case_ = read_whole_file(options.case_file);
+    read_case();
+    runs_ = matrix(study_.variations);
   }
 
   int drive() {
@@ -77,13 +77,19 @@ class StudyDriver {
     return all;
   }
 
+  void read_case() {
+    const Session session(options_, options_.case_file, true);
+    study_.title = session.model().title.empty() ? case_name(options_.case_file) : session.model().title;
+    for (const std::string& text : options_.vary.empty() ? session.model().study : options_.vary)
+      study_.variations.push_back(read_variation(text));
+  }
+
   // Every combination is checked before the first one runs.
-  void check() {
+  void check() const {
     for (const StudyRun& run : runs_) {
       Options options = options_;
       options.settings = settings(run);
       const Session session(options, options.case_file, true);
-      study_.title = session.model().title.empty() ? case_name(options.case_file) : session.model().title;
     }
   }
 
