@@ -132,7 +132,7 @@ struct CaseModel {
   std::vector<const shoal_object*> outputs;
   std::vector<ProbeModel> probes;
   std::vector<ReferenceModel> references;
-  std::vector<std::string> study;  ///< KEY=VALUE,VALUE,...
+  std::vector<std::string> study;           ///< KEY=VALUE,VALUE,...
   const shoal_object* smoothing = nullptr;  ///< of section_table("smoothing")
   const shoal_object* values = nullptr;     ///< of case_table()
   ObjectStore store;
