@@ -2,13 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "diffusion.hpp"
 
-#include <algorithm>
-#include <cstdio>
+#include <cmath>
+#include <string_view>
 
 #include "conductivity.hpp"
+#include "fit.hpp"
 #include "integrator.hpp"
 #include "pairwise.hpp"
 #include "stencil.hpp"
+#include "surface.hpp"
 #include "step.hpp"
 
 namespace shoal::diffusion {
@@ -42,12 +44,40 @@ std::unique_ptr<AnyMedium> medium_of(const Builder& b, const Diffusion& physics,
   return medium;
 }
 
+template <class Kind>
+void read_condition(const shoal_object& object, int dimensions, std::string_view type, std::vector<Condition>& to) {
+  if (object.type->name != type) return;
+  Kind kind;
+  kind.read(object, dimensions);
+  to.push_back(kind.condition());
+}
+
+std::vector<Condition> conditions_of(const Diffusion& physics, int dimensions) {
+  std::vector<Condition> conditions;
+  for (const ObjectHandle& handle : physics.boundaries.value()) {
+    const std::size_t before = conditions.size();
+    read_condition<FixedValue>(*handle.object, dimensions, "diffusion.fixed_value", conditions);
+    read_condition<Flux>(*handle.object, dimensions, "diffusion.flux", conditions);
+    read_condition<Convection>(*handle.object, dimensions, "diffusion.convection", conditions);
+    if (conditions.size() == before)
+      throw CaseError(std::string(handle.object->place) + ": " + handle.object->type->name +
+                      " is no condition at a surface; there are diffusion.fixed_value, diffusion.flux and "
+                      "diffusion.convection");
+  }
+  return conditions;
+}
+
 // What is attached for one field on all bodies.
 class OneField {
  public:
   OneField(const Builder& b, const Diffusion& physics, const std::vector<BodyOfMedium>& bodies,
-           std::string field, std::size_t number)
-      : b_(b), physics_(physics), bodies_(bodies), field_(std::move(field)), loop_("diffusion_of_" + field_) {
+           const std::vector<Condition>& conditions, std::string field, std::size_t number)
+      : b_(b),
+        physics_(physics),
+        bodies_(bodies),
+        conditions_(conditions),
+        field_(std::move(field)),
+        loop_("diffusion_of_" + field_ + "_in_" + b.body(bodies.front().index).name) {
     for (const BodyOfMedium& body : bodies_) {
       media_.push_back(body.medium->conductivity(number));
       isotropic_ = isotropic_ && media_.back().isotropic();
@@ -57,7 +87,10 @@ class OneField {
   void attach() const {
     b_.loop(loop_.c_str(), at_diffuse, {"rate", "update"});
     const At at_rate{loop_.c_str(), "rate"}, at_update{loop_.c_str(), "update"};
-    for (std::size_t k = 0; k < bodies_.size(); ++k) attach_conductivity(k);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      attach_conductivity(k);
+      if (has_surface()) attach_surface(k, at_rate);
+    }
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       const BodyIndex body = bodies_[k].index;
       b_.own_field(body, rate_of(field_).c_str(), at_rate);
@@ -94,12 +127,10 @@ class OneField {
     stencil->motions.push_back(bodies_[k].motion);
     for (std::size_t other = 0; other < bodies_.size(); ++other)
       if (other != k) stencil->motions.push_back(bodies_[other].motion);
-    const auto weights = [&](auto& op) {
-      op.set(field_, isotropic_, stencil);
-      op.capacity = bodies_[k].medium->capacity();
-    };
-    b_.attach<PairwiseWeights>("diffusion.weights", at_start, target_of(k), weights);
-    b_.attach<PairwiseWeights>("diffusion.weights", at_before, target_of(k), weights);
+    if (physics_.scheme.value() == "conservative")
+      attach_weights<PairwiseWeights>(k, stencil);
+    else
+      attach_weights<FitWeights>(k, stencil);
     b_.attach<OuterStep>("diffusion.step", at_before, b_.target(bodies_[k].index), [&](auto& op) {
       op.stencil = stencil;
       op.stages = stages_;
@@ -107,11 +138,49 @@ class OneField {
     });
     b_.attach<ApplyStencil>("diffusion.rate", at_rate, target_of(k),
                             [&](auto& op) { op.set(field_, stencil); });
+    if (!conditions_.empty())
+      b_.attach<ApplySurface>("diffusion.rate.surface", at_rate, b_.target(bodies_[k].index),
+                              [&](auto& op) { op.set(field_, stencil); });
+  }
+
+  template <class Weights>
+  void attach_weights(std::size_t k, const std::shared_ptr<Stencil>& stencil) const {
+    for (const At at : {at_start, at_before})
+      b_.attach<Weights>("diffusion.weights", at, target_of(k), [&](auto& op) {
+        op.set(field_, isotropic_, stencil);
+        op.capacity = bodies_[k].medium->capacity();
+        op.moving = physics_.inside.is_set();
+        if (has_surface()) op.set_surface(field_, conditions_);
+      });
+  }
+
+  // Whether surfaces of the bodies are known: not those of bodies that move.
+  bool has_surface() const {
+    return !physics_.inside.is_set() && (physics_.scheme.value() != "conservative" || !conditions_.empty());
+  }
+
+  void attach_surface(std::size_t k, At at_rate) const {
+    b_.attach<FindSurface>("diffusion.surface", at_start, target_of(k), [&](auto& op) {
+      op.set(field_);
+      op.conditions = conditions_;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const bool periodic = b_.periodic(static_cast<int>(a));
+        op.lower[a] = periodic ? b_.raw().lower[a] : -HUGE_VAL;
+        op.upper[a] = periodic ? b_.raw().upper[a] : HUGE_VAL;
+      }
+    });
+    if (conditions_.empty()) return;
+    b_.attach<SurfaceData>("diffusion.surface_data", at_rate, b_.target(bodies_[k].index), [&](auto& op) {
+      op.set(field_);
+      op.conditions = conditions_;
+      op.stages = stages_;
+    });
   }
 
   const Builder& b_;
   const Diffusion& physics_;
   const std::vector<BodyOfMedium>& bodies_;
+  const std::vector<Condition>& conditions_;
   std::string field_, loop_;
   std::vector<Conductivity> media_;
   bool isotropic_ = true;
@@ -137,8 +206,9 @@ void Diffusion::build(const Builder& b) {
     for (const BodyOfMedium& body : with_media)
       b.attach<WatchMotion>("diffusion.watch", at, b.target(body.index),
                             [&](auto& op) { op.motion = body.motion; });
+  const std::vector<Condition> conditions = conditions_of(*this, b.dimensions());
   for (std::size_t k = 0; k < fields->size(); ++k)
-    OneField(b, *this, with_media, fields.value()[k].name, k).attach();
+    OneField(b, *this, with_media, conditions, fields.value()[k].name, k).attach();
 }
 
 }  // namespace shoal::diffusion

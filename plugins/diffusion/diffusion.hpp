@@ -5,7 +5,7 @@
 //
 //   loop diffusion          before     the first half of what is split off the diffusion (reactions)
 //                           diffuse
-//     loop diffusion_of_c   rate       everything that adds to <c>_rate
+//     loop diffusion_of_c_in_body  rate       everything that adds to <c>_rate
 //                           update     one stage of the time integration
 //                           after      the second half
 //
@@ -31,13 +31,23 @@ struct Diffusion final : Physics {
                              ObjectsOf{SHOAL_TYPE_MATERIAL},
                              optional,
                              example("{diffusion.medium: {diffusivity: 1e-7}}")};
+  Param<Choice> scheme{
+      "scheme", nullptr,
+      "accurate: second order on any particles and at surfaces, for coefficients that are smooth. conservative: "
+      "keeps the content to rounding, and the flux continuous where coefficients jump.",
+      one_of("accurate", "conservative"), default_to("accurate")};
+  Param<std::vector<ObjectHandle>> boundaries{
+      "boundaries", nullptr,
+      "What holds at the surfaces of the bodies; the first condition whose 'where' holds counts, and where none "
+      "does they are insulated.",
+      ObjectsOf{SHOAL_TYPE_PHYSICS}, optional,
+      example("[diffusion.fixed_value: {where: x < 1e-6, value: 293}]")};
   Param<std::string> inside{
       "inside", nullptr,
       "Loop and stage of another plugin in which the loop of diffusion runs, for fields that a moving body "
       "carries along.",
       optional, example("advection/forces")};
-  Param<double> cfl{"cfl", "1", "Step over the largest one that is known to be stable.", positive,
-                    default_to(1.0)};
+  Param<double> cfl{"cfl", "1", "Step over the largest one that is stable.", positive, default_to(0.9)};
 
   void build(const Builder& builder);
 };

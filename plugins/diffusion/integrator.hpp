@@ -19,6 +19,8 @@ struct Stages {
   double step = 0;   // s, the whole step
   double start = 0;  // s, time at its beginning
 
+  // Time in stage `inner`, s.
+  double time_of(const shoal_step& inner) const { return current(inner) == 1 ? start : start + step; }
   // 1, 2, ...: the stage that a step of the inner loop is.
   int current(const shoal_step& inner) const {
     return 1 + static_cast<int>(std::lround((inner.time - start) / step * number));

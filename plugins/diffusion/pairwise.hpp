@@ -12,13 +12,18 @@
 //         direction is more than about three times that of another: heat then flows uphill along some pairs.
 //         k_ij is the mean there.
 // The isotropic sum is normalised on the lattice in the same way.
+// Surface points b within reach, each of area dx^(d-1):
+//   C_i dc_i/dt += sum_b 2 W_ib area q_b,   q_b what enters: g, or K (c_b - c_i) over the distance to the surface
+// It counts what a flux brings in to first order only; where surfaces matter take the accurate scheme.
 #pragma once
 
 #include <cmath>
 #include <memory>
 
 #include "small_matrix.hpp"
+#include "spectral_radius.hpp"
 #include "stencil.hpp"
+#include "surface.hpp"
 
 namespace shoal::diffusion {
 
@@ -76,57 +81,70 @@ inline double harmonic(double a, double b) {
   return a > 0.0 && b > 0.0 ? 2.0 * a * b / (a + b) : 0.5 * (a + b);
 }
 
-// Computes the weights of pairs where particles have moved since the last time.
-struct PairwiseWeights : RowOperator {
+// The weights of pairs, and what the schemes have in common.
+class WeightsOfPairs : public RowOperator {
+ public:
   In<Vector> position{"position"};
   In<Scalar> volume{"volume", neighbours_only};
   std::unique_ptr<In<Scalar>> scalar;
   std::unique_ptr<In<Matrix>> tensor;
+  std::unique_ptr<SurfacePoints> points;
   Maximum row_sum;
 
   std::shared_ptr<Stencil> stencil;
   double capacity = 1;  // J/(m3 K), or 1
-  Names names;
+  bool moving = false;  // no power iteration then: weights are renewed all the time
 
   void set(const std::string& field, bool isotropic, std::shared_ptr<Stencil> weights) {
-    const char* name = names.keep(conductivity_of(field));
+    const char* name = names_.keep(conductivity_of(field));
     if (isotropic)
       scalar = std::make_unique<In<Scalar>>(name);
     else
       tensor = std::make_unique<In<Matrix>>(name);
     stencil = std::move(weights);
   }
+  void set_surface(const std::string& field, const std::vector<Condition>& conditions) {
+    points = std::make_unique<SurfacePoints>(names_.keep(surface_of(field)));
+    points->conditions = conditions;
+  }
 
   void begin() { active_ = renew_stencil(*this, *stencil); }
   void end() {
-    if (active_) stencil->largest_row = row_sum.result();
+    if (!active_) return;
+    // 2 max_i sum_j |l_ij| bounds all eigenvalues (Gershgorin), by a factor of 1.5 to 4 too high.
+    stencil->spectral_radius = 2.0 * row_sum.result();
+    if (!moving)
+      stencil->spectral_radius = std::min(stencil->spectral_radius, 1.1 * spectral_radius(*this, *stencil));
   }
   void save(const shoal_stream& stream) const {
-    check_host(stream.write(stream.context, &stencil->largest_row, sizeof(double)));
+    check_host(stream.write(stream.context, &stencil->spectral_radius, sizeof(double)));
   }
   void load(const shoal_stream& stream) {
-    check_host(stream.read(stream.context, &stencil->largest_row, sizeof(double)));
+    check_host(stream.read(stream.context, &stencil->spectral_radius, sizeof(double)));
   }
 
+ protected:
+  bool active() const { return active_; }
+
+  // K of particle j of a relation, as a tensor.
   template <int D>
-  void run_chunk(const shoal_chunk& chunk) const {
-    if (!active_) return;
-    with_kernel<D>(target().smoothing_kernel, smoothing_length(), [&](const auto& kernel) {
-      const LatticeMoments<D> lattice(kernel, spacing());
-      for (std::uint64_t i = chunk.begin; i < chunk.end; ++i)
-        row_sum.update(Particle<D>{i, chunk.partial}, fill_row<D>(kernel, lattice, i));
-    });
+  Mat<D> tensor_of(std::size_t k, std::uint32_t j) const {
+    if (scalar) return scalar->of_neighbours(k)[j] * identity<D>();
+    return gather_mat<D>(tensor->of_neighbours(k), j);
   }
   template <int D>
-  void run_chunk_scalar(const shoal_chunk& chunk) const {
-    run_chunk<D>(chunk);
+  Mat<D> own_tensor(std::uint64_t i) const {
+    if (scalar) return scalar->data()[i] * identity<D>();
+    return (*tensor)[Particle<D>{i, nullptr}];
   }
 
- private:
+  // The row of the conservative scheme; returns sum_j |l_ij|.
   template <int D, class Kernel>
-  double fill_row(const Kernel& kernel, const LatticeMoments<D>& lattice, std::uint64_t i) const {
+  double pairwise_row(const Kernel& kernel, const LatticeMoments<D>& lattice, std::uint64_t i,
+                      std::vector<SurfaceWeight>& surface) const {
     double total = 0;
     const Vec<D> x_i = position[Particle<D>{i, nullptr}];
+    if (points) total += surface_point<D>(kernel, i, -1, static_cast<std::uint32_t>(i), surface);
     for (std::size_t k = 0; k < n_relations(); ++k) {
       const shoal_neighbours& list = neighbours(k);
       for (std::uint64_t entry = list.offsets[i]; entry < list.offsets[i] + list.counts[i]; ++entry) {
@@ -137,21 +155,61 @@ struct PairwiseWeights : RowOperator {
                          coupling<D>(lattice, k, i, j, (1.0 / std::max(r, 1e-200)) * r_ij);
         stencil->weights[k][entry] = w;
         total += std::abs(w);
+        if (points && k == 0) total += surface_point<D>(kernel, i, 0, j, surface);
       }
     }
     return total;
   }
 
+ private:
   template <int D>
   double coupling(const LatticeMoments<D>& lattice, std::size_t k, std::uint64_t i, std::uint32_t j,
                   const Vec<D>& e) const {
     if (scalar) return harmonic(scalar->data()[i], scalar->of_neighbours(k)[j]) / lattice.slope();
-    const auto along = [&](const Mat<D>& tensor_of_one) { return dot(e, lattice.b_of(tensor_of_one) * e); };
-    return harmonic(along((*tensor)[Particle<D>{i, nullptr}]),
-                    along(gather_mat<D>(tensor->of_neighbours(k), j)));
+    const auto along = [&](const Mat<D>& tensor_of_one) {
+      return dot(e, lattice.b_of(tensor_of_one) * e);
+    };
+    return harmonic(along(own_tensor<D>(i)), along(tensor_of<D>(k, j)));
   }
 
+  template <int D, class Kernel>
+  double surface_point(const Kernel& kernel, std::uint64_t i, int relation, std::uint32_t j,
+                       std::vector<SurfaceWeight>& surface) const {
+    const auto point = points->template at<D>(*this, relation, j);
+    if (point.number < 2) return 0.0;
+    const Vec<D> x = point.place - position[Particle<D>{i, nullptr}];
+    const double weight = 2.0 / capacity * kernel.w(norm(x)) * std::pow(spacing(), D - 1);
+    if (!(weight > 0.0)) return 0.0;
+    // A c_s + q = g and q = K (c_s - c_i) / distance
+    const Condition& condition = points->conditions[static_cast<std::size_t>(point.number - 2)];
+    const double per_length = dot(point.normal, own_tensor<D>(i) * point.normal) /
+                              std::max(dot(x, point.normal), 0.25 * spacing());
+    const double q = condition.b == 0.0 ? per_length / condition.a
+                                        : per_length / (condition.a + condition.b * per_length);
+    surface.push_back({static_cast<std::uint32_t>(i), j, relation, weight * q, weight * q * condition.a});
+    return surface.back().per_value;
+  }
+
+  Names names_;
   bool active_ = false;
+};
+
+// Computes the weights of the conservative scheme where particles have moved since the last time.
+struct PairwiseWeights : WeightsOfPairs {
+  template <int D>
+  void run_chunk(const shoal_chunk& chunk) const {
+    if (!active()) return;
+    auto& surface = stencil->surface_of(chunk);
+    with_kernel<D>(target().smoothing_kernel, smoothing_length(), [&](const auto& kernel) {
+      const LatticeMoments<D> lattice(kernel, spacing());
+      for (std::uint64_t i = chunk.begin; i < chunk.end; ++i)
+        row_sum.update(Particle<D>{i, chunk.partial}, pairwise_row<D>(kernel, lattice, i, surface));
+    });
+  }
+  template <int D>
+  void run_chunk_scalar(const shoal_chunk& chunk) const {
+    run_chunk<D>(chunk);
+  }
 };
 
 }  // namespace shoal::diffusion

@@ -24,7 +24,10 @@ inline std::string rate_of(const std::string& field) { return field + "_rate"; }
 inline std::string start_of(const std::string& field) { return field + "_start"; }
 inline std::string start_rate_of(const std::string& field) { return field + "_start_rate"; }
 inline std::string previous_of(const std::string& field) { return field + "_previous"; }
-// K / capacity, per particle: a scalar or a tensor.
+// What holds at the surface point of a particle, and the data there (surface.hpp).
+inline std::string surface_of(const std::string& field) { return field + "_surface"; }
+inline std::string surface_data_of(const std::string& field) { return field + "_surface_data"; }
+// K, per particle: a scalar or a tensor.
 inline std::string conductivity_of(const std::string& field) { return field + "_conductivity"; }
 
 }  // namespace shoal::diffusion

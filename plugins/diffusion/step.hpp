@@ -11,13 +11,13 @@
 
 namespace shoal::diffusion {
 
-// dt <= 2 / lambda with lambda <= 2 max_i sum_j |l_ij| (Gershgorin).
+// dt <= 2 / lambda, lambda the spectral radius: the stability limit of Heun's method.
 struct OuterStep : ParticleOperator<OuterStep> {
   std::shared_ptr<const Stencil> stencil;
   std::shared_ptr<Stages> stages;
   double cfl = 1;
 
-  double time_step(double) const { return cfl / stencil->largest_row; }
+  double time_step(double) const { return cfl * 2.0 / stencil->spectral_radius; }
   void begin() {
     stages->number = 2;
     stages->step = dt();

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The accurate scheme: second derivatives from a quadratic weighted least-squares fit, with what is known of the surface
+// among the rows that are fitted.
+//   c(x) - c_i = a . p(x - x_i),   p = (x, y, xx, xy, yy) or (x, y, z, xx, xy, xz, yy, yz, zz), lengths over h
+//   rows   c_j - c_i = a . p(x_j - x_i)                                  for each neighbour j
+//          A c + B n . K grad c = g at the surface point of a particle    for each such point b (surface.hpp)
+//   each weighted with W(r). Then, with the second derivatives d2 that follow from a and K_ij = (K_i + K_j) / 2,
+//   C dc_i/dt = sum_j K_ij : d2_ij (c_j - c_i) + sum_b K_ib : d2_ib (g_b - A_b c_i),
+// which is div(K grad c), as d_a (K d_b c) = (d_a d_b (K c) - c d_a d_b K + K d_a d_b c) / 2.
+// Second order inside, at surfaces of any shape, and on disordered particles; a surface of which nothing is said is
+// insulated by A = 0, B = 1, g = 0. Contents are kept to second order, not to rounding. K has to be smooth.
+// Where neighbours are too few for the fit, the row is that of the conservative scheme.
+// Measured for the Laplacian on 20 x 20 particles disordered by 0.2 dx, squares and discs, surfaces of value or flux: all
+// eigenvalues have a negative real part.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "pairwise.hpp"
+#include "small_matrix.hpp"
+#include "stencil.hpp"
+
+namespace shoal::diffusion {
+
+template <int D>
+struct Quadratic {
+  static constexpr int terms = D == 2 ? 5 : 9;
+  using Terms = SmallVector<terms>;
+
+  // p at the distance x / h
+  static Terms monomials(const Vec<D>& x) {
+    Terms p{};
+    std::size_t k = 0;
+    for (int a = 0; a < D; ++a) p[k++] = x[a];
+    for (int a = 0; a < D; ++a)
+      for (int b = a; b < D; ++b) p[k++] = x[a] * x[b];
+    return p;
+  }
+  // (v . grad) p there
+  static Terms derivative(const Vec<D>& x, const Vec<D>& v) {
+    Terms p{};
+    std::size_t k = 0;
+    for (int a = 0; a < D; ++a) p[k++] = v[a];
+    for (int a = 0; a < D; ++a)
+      for (int b = a; b < D; ++b) p[k++] = v[a] * x[b] + x[a] * v[b];
+    return p;
+  }
+  // Coefficients on a of K : d2
+  static Terms contraction(const SmallMatrix<terms>& inverse, const Mat<D>& k, double h) {
+    Terms g{};
+    int row = D;
+    for (int a = 0; a < D; ++a)
+      for (int b = a; b < D; ++b, ++row)
+        for (int c = 0; c < terms; ++c)
+          g[static_cast<std::size_t>(c)] += 2.0 / (h * h) * k(a, b) * inverse(row, c);
+    return g;
+  }
+  static double dot(const Terms& a, const Terms& b) {
+    double sum = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+    return sum;
+  }
+};
+
+// Computes the weights of pairs and of surface points where particles have moved since the last time.
+struct FitWeights : WeightsOfPairs {
+  template <int D>
+  void run_chunk(const shoal_chunk& chunk) const {
+    if (!active()) return;
+    auto& surface = stencil->surface_of(chunk);
+    with_kernel<D>(target().smoothing_kernel, smoothing_length(), [&](const auto& kernel) {
+      const LatticeMoments<D> lattice(kernel, spacing());
+      std::vector<Row<D>> rows;
+      for (std::uint64_t i = chunk.begin; i < chunk.end; ++i) {
+        gather_rows<D>(kernel, i, rows);
+        double sum = fit_row<D>(i, rows, surface);
+        if (sum < 0.0) sum = pairwise_row<D>(kernel, lattice, i, surface);
+        row_sum.update(Particle<D>{i, chunk.partial}, sum);
+      }
+    });
+  }
+  template <int D>
+  void run_chunk_scalar(const shoal_chunk& chunk) const {
+    run_chunk<D>(chunk);
+  }
+
+ private:
+  template <int D>
+  struct Row {
+    typename Quadratic<D>::Terms p;  // divided by `size`
+    double weight;
+    double size;
+    int relation;         // -1: the particle itself
+    std::uint32_t j;
+    std::uint64_t entry;  // in the list, of a neighbour
+    int condition;        // number of the condition at a surface point; 0: a neighbour
+  };
+
+  template <int D, class Kernel>
+  void gather_rows(const Kernel& kernel, std::uint64_t i, std::vector<Row<D>>& rows) const {
+    rows.clear();
+    const Vec<D> x_i = position[Particle<D>{i, nullptr}];
+    const double per_h = 1.0 / smoothing_length();
+    if (points) add_surface_point<D>(kernel, x_i, -1, static_cast<std::uint32_t>(i), rows);
+    for (std::size_t k = 0; k < n_relations(); ++k) {
+      const shoal_neighbours& list = neighbours(k);
+      for (std::uint64_t entry = list.offsets[i]; entry < list.offsets[i] + list.counts[i]; ++entry) {
+        const std::uint32_t j = list.indices[entry];
+        const Vec<D> x = gather_vec<D>(position.of_neighbours(k), j) - x_i;
+        const double w = kernel.w(norm(x));
+        if (w > 0.0)
+          rows.push_back({Quadratic<D>::monomials(per_h * x), w, 1.0, static_cast<int>(k), j, entry, 0});
+        if (points && k == 0) add_surface_point<D>(kernel, x_i, 0, j, rows);
+      }
+    }
+  }
+
+  // The row of the surface point that particle j carries, if it has one within reach.
+  template <int D, class Kernel>
+  void add_surface_point(const Kernel& kernel, const Vec<D>& x_i, int relation, std::uint32_t j,
+                         std::vector<Row<D>>& rows) const {
+    const auto point = points->template at<D>(*this, relation, j);
+    if (point.number == 0) return;
+    const double per_h = 1.0 / smoothing_length();
+    const Vec<D> x = point.place - x_i;
+    const double w = kernel.w(norm(x));
+    if (!(w > 0.0)) return;
+    const Condition condition =
+        point.number == 1 ? Condition{} : points->conditions[static_cast<std::size_t>(point.number - 2)];
+    const Mat<D> k = relation < 0 ? own_tensor<D>(j) : tensor_of<D>(0, j);
+    const Vec<D> flux = condition.b * per_h * (k * point.normal);
+    auto p = Quadratic<D>::derivative(per_h * x, flux);
+    const auto value = Quadratic<D>::monomials(per_h * x);
+    // The row is divided by its size, so that it weighs as much as those of neighbours.
+    const double size = std::abs(condition.a) + norm(flux);
+    for (std::size_t t = 0; t < p.size(); ++t) p[t] = (p[t] + condition.a * value[t]) / size;
+    rows.push_back({p, w, size, relation, j, 0, point.number});
+  }
+
+  // Fills the weights of row i; returns sum |l|, or a negative number if the rows do not determine the fit.
+  template <int D>
+  double fit_row(std::uint64_t i, const std::vector<Row<D>>& rows,
+                 std::vector<SurfaceWeight>& surface) const {
+    constexpr int terms = Quadratic<D>::terms;
+    if (rows.size() < static_cast<std::size_t>(terms + 1)) return -1.0;
+    SmallMatrix<terms> moments;
+    for (const Row<D>& row : rows)
+      for (int a = 0; a < terms; ++a)
+        for (int b = 0; b <= a; ++b)
+          moments(a, b) += row.weight * row.p[static_cast<std::size_t>(a)] * row.p[static_cast<std::size_t>(b)];
+    for (int a = 0; a < terms; ++a)
+      for (int b = 0; b < a; ++b) moments(b, a) = moments(a, b);
+    if (invert(moments) < 1e-8) return -1.0;
+
+    const Mat<D> k_i = own_tensor<D>(i);
+    const double h = smoothing_length();
+    auto g = Quadratic<D>::contraction(moments, k_i, h);
+    Mat<D> k_of_g = k_i;
+    double total = 0;
+    for (const Row<D>& row : rows) {
+      const Mat<D> k_j = row.relation < 0 ? own_tensor<D>(row.j) : tensor_of<D>(static_cast<std::size_t>(row.relation), row.j);
+      const Mat<D> mean = 0.5 * (k_i + k_j);
+      if (!(mean == k_of_g)) {
+        g = Quadratic<D>::contraction(moments, mean, h);
+        k_of_g = mean;
+      }
+      const double l = row.weight / capacity * Quadratic<D>::dot(g, row.p);
+      total += row.condition == 0 ? fill_pair<D>(row, l) : fill_surface<D>(i, row, l, surface);
+    }
+    return total;
+  }
+  template <int D>
+  double fill_pair(const Row<D>& row, double l) const {
+    stencil->weights[static_cast<std::size_t>(row.relation)][row.entry] = l;
+    return std::abs(l);
+  }
+  template <int D>
+  double fill_surface(std::uint64_t i, const Row<D>& row, double l, std::vector<SurfaceWeight>& surface) const {
+    if (row.condition < 2) return 0.0;
+    const double per_data = l / row.size;
+    const double per_value = per_data * points->conditions[static_cast<std::size_t>(row.condition - 2)].a;
+    surface.push_back({static_cast<std::uint32_t>(i), row.j, row.relation, per_data, per_value});
+    return std::abs(per_value);
+  }
+};
+
+}  // namespace shoal::diffusion
