@@ -84,7 +84,7 @@ class OneField {
     }
   }
 
-  void attach() const {
+  void attach() {
     b_.loop(loop_.c_str(), at_diffuse, {"rate", "update"});
     const At at_rate{loop_.c_str(), "rate"}, at_update{loop_.c_str(), "update"};
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -95,13 +95,18 @@ class OneField {
       const BodyIndex body = bodies_[k].index;
       b_.own_field(body, rate_of(field_).c_str(), at_rate);
       attach_stencil(k, at_rate);
-      b_.attach<HeunStage>("diffusion.heun", at_update, b_.target(body), [&](auto& op) {
+      const auto setup = [&](auto& op) {
         op.set(field_);
         op.stages = stages_;
-      });
-      b_.attach<InnerStep>("diffusion.stage", at_update, b_.target(body),
-                           [&](auto& op) { op.stages = stages_; });
+      };
+      if (integrator() == Integrator::rk2)
+        b_.attach<HeunStage>("diffusion.rk2", at_update, b_.target(body), setup);
+      else
+        b_.attach<SuperStage>("diffusion.stage", at_update, b_.target(body), setup);
     }
+    b_.attach<InnerStep>("diffusion.stages", at_update, b_.target(bodies_.front().index),
+                         [&](auto& op) { op.stages = stages_; });
+    attach_step();
   }
 
  private:
@@ -122,8 +127,30 @@ class OneField {
     return b_.target(bodies_[k].index, neighbours);
   }
 
-  void attach_stencil(std::size_t k, At at_rate) const {
+  Integrator integrator() const {
+    const std::string& word = physics_.integrator->word;
+    return word == "rk2" ? Integrator::rk2 : word == "rkl2" ? Integrator::rkl2 : Integrator::automatic;
+  }
+
+  void attach_step() const {
+    const char* first = b_.body(bodies_.front().index).name;
+    b_.attach<OuterStep>("diffusion.step", at_before, b_.target(bodies_.front().index), [&](auto& op) {
+      op.stencils = stencils_;
+      op.stages = stages_;
+      op.integrator = integrator();
+      op.cfl = physics_.cfl;
+      op.accuracy = physics_.accuracy;
+      op.duration = b_.end_time();
+      op.what = "diffusion of " + field_ + " in " + first;
+    });
+    if (integrator() == Integrator::automatic)
+      b_.note(field_ + " in " + first + ": in each step rkl2 where its stages for the accuracy cost less than rk2's, "
+              "else rk2 (--log-level info says when and why)");
+  }
+
+  void attach_stencil(std::size_t k, At at_rate) {
     const auto stencil = std::make_shared<Stencil>();
+    stencils_.push_back(stencil);
     stencil->motions.push_back(bodies_[k].motion);
     for (std::size_t other = 0; other < bodies_.size(); ++other)
       if (other != k) stencil->motions.push_back(bodies_[other].motion);
@@ -131,11 +158,6 @@ class OneField {
       attach_weights<PairwiseWeights>(k, stencil);
     else
       attach_weights<FitWeights>(k, stencil);
-    b_.attach<OuterStep>("diffusion.step", at_before, b_.target(bodies_[k].index), [&](auto& op) {
-      op.stencil = stencil;
-      op.stages = stages_;
-      op.cfl = physics_.cfl;
-    });
     b_.attach<ApplyStencil>("diffusion.rate", at_rate, target_of(k),
                             [&](auto& op) { op.set(field_, stencil); });
     if (!conditions_.empty())
@@ -184,6 +206,7 @@ class OneField {
   std::string field_, loop_;
   std::vector<Conductivity> media_;
   bool isotropic_ = true;
+  std::vector<std::shared_ptr<const Stencil>> stencils_;
   std::shared_ptr<Stages> stages_ = std::make_shared<Stages>();
 };
 

@@ -47,6 +47,15 @@ struct Diffusion final : Physics {
       "Loop and stage of another plugin in which the loop of diffusion runs, for fields that a moving body "
       "carries along.",
       optional, example("advection/forces")};
+  Param<Choice> integrator{
+      "integrator", nullptr,
+      "rk2: Heun's method at its largest stable step. rkl2: super time steps as long as 'accuracy' allows. auto: "
+      "in each step the one that costs less.",
+      one_of("auto", "rk2", "rkl2"), default_to("auto")};
+  Param<double> accuracy{
+      "accuracy", "1",
+      "Error that rkl2 may make by its steps in the whole run, root mean square over the range of the field.",
+      between(1e-12, 0.1), default_to(1e-4)};
   Param<double> cfl{"cfl", "1", "Step over the largest one that is stable.", positive, default_to(0.9)};
 
   void build(const Builder& builder);
