@@ -10,8 +10,8 @@
 #include "integrator.hpp"
 #include "pairwise.hpp"
 #include "stencil.hpp"
-#include "surface.hpp"
 #include "step.hpp"
+#include "surface.hpp"
 
 namespace shoal::diffusion {
 namespace {
@@ -45,7 +45,8 @@ std::unique_ptr<AnyMedium> medium_of(const Builder& b, const Diffusion& physics,
 }
 
 template <class Kind>
-void read_condition(const shoal_object& object, int dimensions, std::string_view type, std::vector<Condition>& to) {
+void read_condition(const shoal_object& object, int dimensions, std::string_view type,
+                    std::vector<Condition>& to) {
   if (object.type->name != type) return;
   Kind kind;
   kind.read(object, dimensions);
@@ -144,7 +145,8 @@ class OneField {
       op.what = "diffusion of " + field_ + " in " + first;
     });
     if (integrator() == Integrator::automatic)
-      b_.note(field_ + " in " + first + ": in each step rkl2 where its stages for the accuracy cost less than rk2's, "
+      b_.note(field_ + " in " + first +
+              ": in each step rkl2 where its stages for the accuracy cost less than rk2's, "
               "else rk2 (--log-level info says when and why)");
   }
 

@@ -31,27 +31,30 @@ struct Diffusion final : Physics {
                              ObjectsOf{SHOAL_TYPE_MATERIAL},
                              optional,
                              example("{diffusion.medium: {diffusivity: 1e-7}}")};
-  Param<Choice> scheme{
-      "scheme", nullptr,
-      "accurate: second order on any particles and at surfaces, for coefficients that are smooth. conservative: "
-      "keeps the content to rounding, and the flux continuous where coefficients jump.",
-      one_of("accurate", "conservative"), default_to("accurate")};
+  Param<Choice> scheme{"scheme", nullptr,
+                       "accurate: second order on any particles and at surfaces, for coefficients that are "
+                       "smooth. conservative: "
+                       "keeps the content to rounding, and the flux continuous where coefficients jump.",
+                       one_of("accurate", "conservative"), default_to("accurate")};
   Param<std::vector<ObjectHandle>> boundaries{
-      "boundaries", nullptr,
-      "What holds at the surfaces of the bodies; the first condition whose 'where' holds counts, and where none "
+      "boundaries",
+      nullptr,
+      "What holds at the surfaces of the bodies; the first condition whose 'where' holds counts, and where "
+      "none "
       "does they are insulated.",
-      ObjectsOf{SHOAL_TYPE_PHYSICS}, optional,
+      ObjectsOf{SHOAL_TYPE_PHYSICS},
+      optional,
       example("[diffusion.fixed_value: {where: x < 1e-6, value: 293}]")};
   Param<std::string> inside{
       "inside", nullptr,
       "Loop and stage of another plugin in which the loop of diffusion runs, for fields that a moving body "
       "carries along.",
       optional, example("advection/forces")};
-  Param<Choice> integrator{
-      "integrator", nullptr,
-      "rk2: Heun's method at its largest stable step. rkl2: super time steps as long as 'accuracy' allows. auto: "
-      "in each step the one that costs less.",
-      one_of("auto", "rk2", "rkl2"), default_to("auto")};
+  Param<Choice> integrator{"integrator", nullptr,
+                           "rk2: Heun's method at its largest stable step. rkl2: super time steps as long as "
+                           "'accuracy' allows. auto: "
+                           "in each step the one that costs less.",
+                           one_of("auto", "rk2", "rkl2"), default_to("auto")};
   Param<double> accuracy{
       "accuracy", "1",
       "Error that rkl2 may make by its steps in the whole run, root mean square over the range of the field.",

@@ -94,7 +94,7 @@ struct FitWeights : WeightsOfPairs {
     typename Quadratic<D>::Terms p;  // divided by `size`
     double weight;
     double size;
-    int relation;         // -1: the particle itself
+    int relation;  // -1: the particle itself
     std::uint32_t j;
     std::uint64_t entry;  // in the list, of a neighbour
     int condition;        // number of the condition at a surface point; 0: a neighbour
@@ -151,7 +151,8 @@ struct FitWeights : WeightsOfPairs {
     for (const Row<D>& row : rows)
       for (int a = 0; a < terms; ++a)
         for (int b = 0; b <= a; ++b)
-          moments(a, b) += row.weight * row.p[static_cast<std::size_t>(a)] * row.p[static_cast<std::size_t>(b)];
+          moments(a, b) +=
+              row.weight * row.p[static_cast<std::size_t>(a)] * row.p[static_cast<std::size_t>(b)];
     for (int a = 0; a < terms; ++a)
       for (int b = 0; b < a; ++b) moments(b, a) = moments(a, b);
     if (invert(moments) < 1e-8) return -1.0;
@@ -162,7 +163,8 @@ struct FitWeights : WeightsOfPairs {
     Mat<D> k_of_g = k_i;
     double total = 0;
     for (const Row<D>& row : rows) {
-      const Mat<D> k_j = row.relation < 0 ? own_tensor<D>(row.j) : tensor_of<D>(static_cast<std::size_t>(row.relation), row.j);
+      const Mat<D> k_j = row.relation < 0 ? own_tensor<D>(row.j)
+                                          : tensor_of<D>(static_cast<std::size_t>(row.relation), row.j);
       const Mat<D> mean = 0.5 * (k_i + k_j);
       if (!(mean == k_of_g)) {
         g = Quadratic<D>::contraction(moments, mean, h);
@@ -179,7 +181,8 @@ struct FitWeights : WeightsOfPairs {
     return std::abs(l);
   }
   template <int D>
-  double fill_surface(std::uint64_t i, const Row<D>& row, double l, std::vector<SurfaceWeight>& surface) const {
+  double fill_surface(std::uint64_t i, const Row<D>& row, double l,
+                      std::vector<SurfaceWeight>& surface) const {
     if (row.condition < 2) return 0.0;
     const double per_data = l / row.size;
     const double per_value = per_data * points->conditions[static_cast<std::size_t>(row.condition - 2)].a;

@@ -28,10 +28,13 @@ struct Legendre {
 
   static double b(int j) { return j < 2 ? 1.0 / 3.0 : (j * j + j - 2.0) / (2.0 * j * (j + 1.0)); }
   double w1() const { return 4.0 / (s * s + s - 2.0); }
-  double time(int j) const { return j == 0 ? 0.0 : j == 1 ? b(1) * w1() : (j * j + j - 2.0) / (s * s + s - 2.0); }
+  double time(int j) const {
+    return j == 0 ? 0.0 : j == 1 ? b(1) * w1() : (j * j + j - 2.0) / (s * s + s - 2.0);
+  }
   // Stages for a step of dt: the smallest odd number that is stable.
   static int stages(double dt_times_lambda) {
-    const int least = static_cast<int>(std::ceil(0.5 * (std::sqrt(9.0 + 8.0 * dt_times_lambda) - 1.0) - 1e-9));
+    const int least =
+        static_cast<int>(std::ceil(0.5 * (std::sqrt(9.0 + 8.0 * dt_times_lambda) - 1.0) - 1e-9));
     return std::max(3, least % 2 == 0 ? least + 1 : least);
   }
   // Largest lambda dt with s stages.

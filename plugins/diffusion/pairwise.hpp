@@ -166,9 +166,7 @@ class WeightsOfPairs : public RowOperator {
   double coupling(const LatticeMoments<D>& lattice, std::size_t k, std::uint64_t i, std::uint32_t j,
                   const Vec<D>& e) const {
     if (scalar) return harmonic(scalar->data()[i], scalar->of_neighbours(k)[j]) / lattice.slope();
-    const auto along = [&](const Mat<D>& tensor_of_one) {
-      return dot(e, lattice.b_of(tensor_of_one) * e);
-    };
+    const auto along = [&](const Mat<D>& tensor_of_one) { return dot(e, lattice.b_of(tensor_of_one) * e); };
     return harmonic(along(own_tensor<D>(i)), along(tensor_of<D>(k, j)));
   }
 
@@ -182,10 +180,10 @@ class WeightsOfPairs : public RowOperator {
     if (!(weight > 0.0)) return 0.0;
     // A c_s + q = g and q = K (c_s - c_i) / distance
     const Condition& condition = points->conditions[static_cast<std::size_t>(point.number - 2)];
-    const double per_length = dot(point.normal, own_tensor<D>(i) * point.normal) /
-                              std::max(dot(x, point.normal), 0.25 * spacing());
-    const double q = condition.b == 0.0 ? per_length / condition.a
-                                        : per_length / (condition.a + condition.b * per_length);
+    const double per_length =
+        dot(point.normal, own_tensor<D>(i) * point.normal) / std::max(dot(x, point.normal), 0.25 * spacing());
+    const double q =
+        condition.b == 0.0 ? per_length / condition.a : per_length / (condition.a + condition.b * per_length);
     surface.push_back({static_cast<std::uint32_t>(i), j, relation, weight * q, weight * q * condition.a});
     return surface.back().per_value;
   }

@@ -43,13 +43,13 @@ struct WatchMotion : ParticleOperator<WatchMotion> {
 
 // What those who compute the weights and those who apply them share.
 struct SurfaceWeight {
-  std::uint32_t i, j;        // the particle, and the one that carries the surface point
-  std::int32_t relation;     // of j; -1: the point is that of i itself
+  std::uint32_t i, j;          // the particle, and the one that carries the surface point
+  std::int32_t relation;       // of j; -1: the point is that of i itself
   double per_data, per_value;  // dc_i/dt = per_data g_j - per_value c_i
 };
 
 struct Stencil {
-  std::vector<std::vector<SurfaceWeight>> surface;  // [chunk]
+  std::vector<std::vector<SurfaceWeight>> surface;     // [chunk]
   std::vector<std::vector<double>> weights;            // [relation][entry of the list], 0 in the padding
   double spectral_radius = 0;                          // 1/s, largest magnitude of an eigenvalue
   std::vector<std::shared_ptr<const Motion>> motions;  // of the bodies of the relations

@@ -98,15 +98,17 @@ struct OuterStep : ParticleOperator<OuterStep> {
     char text[240];
     const double ratio = s / lambda_dt;
     if (super)
-      std::snprintf(text, sizeof text,
-                    "%s at %.4g s: rkl2, as a step of %.4g s has the accuracy %.2g and takes %d evaluations of the "
-                    "rate, %.2f of those of rk2",
-                    what.c_str(), time(), dt(), accuracy, s, ratio);
+      std::snprintf(
+          text, sizeof text,
+          "%s at %.4g s: rkl2, as a step of %.4g s has the accuracy %.2g and takes %d evaluations of the "
+          "rate, %.2f of those of rk2",
+          what.c_str(), time(), dt(), accuracy, s, ratio);
     else
-      std::snprintf(text, sizeof text,
-                    "%s at %.4g s: rk2, as the accuracy %.2g allows a step of %.4g s only, which is stable with "
-                    "its 2 evaluations of the rate",
-                    what.c_str(), time(), accuracy, dt());
+      std::snprintf(
+          text, sizeof text,
+          "%s at %.4g s: rk2, as the accuracy %.2g allows a step of %.4g s only, which is stable with "
+          "its 2 evaluations of the rate",
+          what.c_str(), time(), accuracy, dt());
     host().log(SHOAL_LOG_INFO, text);
   }
 

@@ -22,10 +22,10 @@ namespace shoal::diffusion {
 
 // One condition as the physics hands it to the operators.
 struct Condition {
-  Expression where;           // holds where it is not zero; empty: everywhere
-  double a = 0, b = 1;        // of A c + B n . K grad c = g
-  Expression data;            // g, or the ambient value
-  double data_factor = 1;     // g = data_factor * data
+  Expression where;        // holds where it is not zero; empty: everywhere
+  double a = 0, b = 1;     // of A c + B n . K grad c = g
+  Expression data;         // g, or the ambient value
+  double data_factor = 1;  // g = data_factor * data
 };
 
 // The kinds of conditions are physics, so that a case can list them under `boundaries`; alone they are none.
@@ -50,8 +50,7 @@ struct ConditionOfCase : Physics {
 };
 
 struct FixedValue final : ConditionOfCase {
-  Param<Expression> value{"value", "1", "Value at the surface, an expression of x, y, z, t.",
-                          example("293")};
+  Param<Expression> value{"value", "1", "Value at the surface, an expression of x, y, z, t.", example("293")};
   Condition condition() const override {
     Condition c = at_place();
     c.a = 1, c.b = 0, c.data = value;
@@ -70,9 +69,8 @@ struct Flux final : ConditionOfCase {
 };
 
 struct Convection final : ConditionOfCase {
-  Param<double> coefficient{"coefficient", "1",
-                            "Coefficient of transfer: W/(m2 K) of heat, m/s of species.", positive,
-                            example("25")};
+  Param<double> coefficient{"coefficient", "1", "Coefficient of transfer: W/(m2 K) of heat, m/s of species.",
+                            positive, example("25")};
   Param<Expression> ambient{"ambient", "1", "Value of what surrounds the body.", example("293")};
   Condition condition() const override {
     Condition c = at_place();
@@ -217,8 +215,7 @@ struct SurfaceData : ParticleOperator<SurfaceData> {
     if (who.empty()) return;
     values.resize(who.size());
     conditions[c].data.evaluate(dimensions(), who.size(), points.data(), stage_time_, values.data());
-    for (std::size_t k = 0; k < who.size(); ++k)
-      data.data()[who[k]] = conditions[c].data_factor * values[k];
+    for (std::size_t k = 0; k < who.size(); ++k) data.data()[who[k]] = conditions[c].data_factor * values[k];
   }
 
   double stage_time_ = 0;
@@ -243,10 +240,14 @@ struct ApplySurface : RowOperator {
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {
     for (const SurfaceWeight& w : stencil->surface[chunk.number]) {
-      const double g = w.relation < 0 ? data.data()[w.j]
-                                      : data.of_neighbours(static_cast<std::size_t>(w.relation))[w.j];
+      const double g =
+          w.relation < 0 ? data.data()[w.j] : data.of_neighbours(static_cast<std::size_t>(w.relation))[w.j];
       rate.data()[w.i] += w.per_data * g - w.per_value * value.data()[w.i];
     }
+  }
+  template <int D>
+  void run_chunk_scalar(const shoal_chunk& chunk) const {
+    run_chunk<D>(chunk);
   }
 };
 

@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The accurate scheme is exact for quadratic fields: inside, and at surfaces of every kind.
+#include <doctest/doctest.h>
+
+#include "fit.hpp"
+#include "particles.hpp"
+#include "surface.hpp"
+
+using namespace shoal;
+using namespace shoal::diffusion;
+using namespace shoal::diffusion::test;
+
+namespace {
+
+constexpr double dx = 0.1, h = 0.13;
+
+// c = g . x + x . H . x / 2 + 2
+struct QuadraticField {
+  std::vector<double> g, H;
+  std::size_t d;
+
+  explicit QuadraticField(int dimensions) : d(static_cast<std::size_t>(dimensions)) {
+    g = {0.7, -0.4, 1.1};
+    H = {1.0, 0.4, -0.6, 0.4, -2.0, 0.8, -0.6, 0.8, 0.5};
+  }
+  double value(const double* x) const {
+    double sum = 2.0;
+    for (std::size_t a = 0; a < d; ++a) {
+      sum += g[a] * x[a];
+      for (std::size_t b = 0; b < d; ++b) sum += 0.5 * H[a * 3 + b] * x[a] * x[b];
+    }
+    return sum;
+  }
+  double gradient(const double* x, std::size_t a) const {
+    double sum = g[a];
+    for (std::size_t b = 0; b < d; ++b) sum += H[a * 3 + b] * x[b];
+    return sum;
+  }
+};
+
+// K = k(x) T: k linear in x, so that div(K grad c) has both parts.
+double k_of(const double* x) { return 2.0 + 0.3 * x[0] - 0.2 * x[1]; }
+double tensor(std::size_t d, std::size_t a, std::size_t b) {
+  static const double t2[4] = {3.0, 0.7, 0.7, 1.0}, t3[9] = {3.0, 0.7, 0.2, 0.7, 1.0, -0.3, 0.2, -0.3, 2.0};
+  return d == 2 ? t2[a * 2 + b] : t3[a * 3 + b];
+}
+
+double divergence(const QuadraticField& c, const double* x, bool varies) {
+  const double slope[3] = {varies ? 0.3 : 0.0, varies ? -0.2 : 0.0, 0.0};
+  double sum = 0;
+  for (std::size_t a = 0; a < c.d; ++a)
+    for (std::size_t b = 0; b < c.d; ++b)
+      sum += tensor(c.d, a, b) * ((varies ? k_of(x) : 1.0) * c.H[a * 3 + b] + slope[a] * c.gradient(x, b));
+  return sum;
+}
+
+void set_fields(Body& body, const QuadraticField& c, bool varies) {
+  const std::size_t d = c.d;
+  const auto& x = body["position"];
+  body.set("volume", std::pow(dx, static_cast<double>(d)));
+  body.set_each("c", 1, [&](std::size_t i, std::size_t) { return c.value(&x[i * d]); });
+  body.set_each("c_conductivity", d * d, [&](std::size_t i, std::size_t ab) {
+    return (varies ? k_of(&x[i * d]) : 1.0) * tensor(d, ab / d, ab % d);
+  });
+}
+
+// The surface of the unit cube: faces of lower x have condition 2, of upper x 3, of upper y 4, others 5.
+void set_surface(Body& body) {
+  const auto d = static_cast<std::size_t>(body.dimensions());
+  std::vector<double> normal(body.size() * d), distance(body.size()), surface(body.size());
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    const double* x = &body["position"][i * d];
+    double nearest = 1.0;
+    std::size_t axis = 0;
+    bool upper = false;
+    for (std::size_t a = 0; a < d; ++a)
+      for (const bool high : {false, true})
+        if ((high ? 1.0 - x[a] : x[a]) < nearest) nearest = high ? 1.0 - x[a] : x[a], axis = a, upper = high;
+    normal[i * d + axis] = upper ? 1.0 : -1.0;
+    distance[i] = -nearest;
+    if (nearest < dx) surface[i] = axis == 0 ? (upper ? 3.0 : 2.0) : axis == 1 && upper ? 4.0 : 5.0;
+  }
+  body["normal"] = normal;
+  body["signed_distance"] = distance;
+  body["c_surface"] = surface;
+}
+
+std::vector<Condition> conditions() {
+  std::vector<Condition> all(4);
+  all[0].a = 1, all[0].b = 0;    // value
+  all[1].a = 0, all[1].b = 1;    // flux
+  all[2].a = 7.5, all[2].b = 1;  // convection
+  all[3].a = 0, all[3].b = 1;    // flux
+  return all;
+}
+
+// g of A c + B n . K grad c at the surface point of each particle
+void set_data(Body& body, const QuadraticField& c) {
+  const std::size_t d = c.d;
+  body.set_each("c_surface_data", 1, [&](std::size_t i, std::size_t) {
+    const int number = static_cast<int>(body["c_surface"][i]);
+    if (number < 2) return 0.0;
+    std::vector<double> x(d);
+    for (std::size_t a = 0; a < d; ++a)
+      x[a] = body["position"][i * d + a] - body["signed_distance"][i] * body["normal"][i * d + a];
+    const Condition condition = conditions()[static_cast<std::size_t>(number - 2)];
+    double flux = 0;
+    for (std::size_t a = 0; a < d; ++a)
+      for (std::size_t b = 0; b < d; ++b)
+        flux += body["normal"][i * d + a] * tensor(d, a, b) * c.gradient(x.data(), b);
+    return condition.a * c.value(x.data()) + condition.b * flux;
+  });
+}
+
+std::shared_ptr<Stencil> new_stencil() {
+  auto stencil = std::make_shared<Stencil>();
+  stencil->motions.push_back(std::make_shared<Motion>());
+  stencil->seen = {7};
+  return stencil;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "div(K grad c) of a quadratic c is exact inside, on disordered particles, where K varies linearly") {
+  for (const int d : {2, 3}) {
+    const int n = d == 2 ? 10 : 8;
+    Body body(d, lattice(d, dx, n, 0.25));
+    QuadraticField c(d);
+    if (varies) c.H.assign(9, 0.0);
+    set_fields(body, c, varies);
+    const auto stencil = new_stencil();
+    FitWeights weights;
+    weights.set("c", false, stencil);
+    weights.capacity = 2.0;
+    const Setup setup{.smoothing_length = h, .spacing = dx};
+    testing::run(weights, body, {&body}, setup);
+    for (const bool scalar : {false, true}) {
+      body.set("c_rate", 0.25);
+      ApplyStencil apply;
+      apply.set("c", stencil);
+      testing::run(apply, body, {&body}, {.smoothing_length = h, .spacing = dx, .scalar = scalar});
+      int inside = 0;
+      for (std::size_t i = 0; i < body.size(); ++i) {
+        const double* x = &body["position"][i * c.d];
+        bool interior = true;
+        for (std::size_t a = 0; a < c.d; ++a) interior &= x[a] > 2 * h && x[a] < n * dx - 2 * h;
+        if (!interior) continue;
+        ++inside;
+        CHECK(body["c_rate"][i] == doctest::Approx(0.25 + divergence(c, x, varies) / 2.0).epsilon(1e-9));
+      }
+      CHECK(inside > 5);
+    }
+  }
+}
+
+TEST_CASE("it is exact up to surfaces with given value, flux and convection, and in their corners") {
+  for (const int d : {2, 3}) {
+    Body body(d, lattice(d, dx, 10, d == 2 ? 0.2 : 0.1));
+    const QuadraticField c(d);
+    set_fields(body, c, false);
+    set_surface(body);
+    set_data(body, c);
+    const auto stencil = new_stencil();
+    FitWeights weights;
+    weights.set("c", false, stencil);
+    weights.set_surface("c", conditions());
+    const Setup setup{.smoothing_length = h, .spacing = dx};
+    testing::run(weights, body, {&body}, setup);
+    body.set("c_rate", 0.0);
+    ApplyStencil pairs;
+    pairs.set("c", stencil);
+    testing::run(pairs, body, {&body}, setup);
+    ApplySurface surface;
+    surface.set("c", stencil);
+    testing::run(surface, body, {&body}, setup);
+    for (std::size_t i = 0; i < body.size(); ++i)
+      CHECK(body["c_rate"][i] ==
+            doctest::Approx(divergence(c, &body["position"][i * c.d], false)).epsilon(1e-8));
+    CHECK(stencil->spectral_radius > 0.0);
+  }
+}
+
+TEST_CASE("a particle with too few neighbours for a fit has the row of the conservative scheme") {
+  Body body(2, {0.0, 0.0, 0.1, 0.0, 0.0, 0.1});
+  body.set("volume", 0.01);
+  body.set("c_conductivity", 1.0);
+  const auto fitted = new_stencil(), pairwise = new_stencil();
+  FitWeights fit;
+  fit.set("c", true, fitted);
+  PairwiseWeights pairs;
+  pairs.set("c", true, pairwise);
+  const Setup setup{.smoothing_length = h, .spacing = dx};
+  testing::run(fit, body, {&body}, setup);
+  testing::run(pairs, body, {&body}, setup);
+  CHECK(fitted->weights[0][0] > 0.0);
+  CHECK(fitted->weights[0] == pairwise->weights[0]);
+}
