@@ -123,9 +123,9 @@ std::shared_ptr<Stencil> new_stencil() {
 
 }  // namespace
 
-TEST_CASE(
-    "div(K grad c) of a quadratic c is exact inside, on disordered particles, where K varies linearly") {
-  for (const int d : {2, 3}) {
+TEST_CASE("div(K grad c) is exact inside, on disordered particles: quadratic c, or linear c and linear K") {
+  const std::pair<int, bool> choices[] = {{2, false}, {3, false}, {2, true}, {3, true}};
+  for (const auto& [d, varies] : choices) {
     const int n = d == 2 ? 10 : 8;
     Body body(d, lattice(d, dx, n, 0.25));
     QuadraticField c(d);
