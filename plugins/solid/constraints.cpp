@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+#include "constraints.hpp"
+
+#include "stages.hpp"
+
+namespace shoal::solid {
+
+void PrescribedMotion::begin() {
+  const double* x = reference_position.data();
+  if (!region.looked()) {
+    region.look(dimensions(), n_particles(), x);
+    for (std::size_t k = 0; k < 3; ++k) {
+      value_[k].assign(motion == Motion::displacement ? n_particles() : 0, 0.0);
+      rate_[k].assign(motion != Motion::held ? n_particles() : 0, 0.0);
+    }
+  }
+  if (motion == Motion::held) return;
+  const double end = time() + (half_step ? 0.5 : 1.0) * dt();
+  const double delta = dt() > 0.0 ? 0.5 * dt() : 1e-6;
+  std::vector<double> before(n_particles());
+  for (std::size_t k = 0; k < static_cast<std::size_t>(dimensions()); ++k) {
+    if (!axes[k]) continue;
+    const Expression& expression = given.component[k];
+    if (motion == Motion::velocity) {
+      expression.evaluate(dimensions(), n_particles(), x, end, rate_[k].data());
+      continue;
+    }
+    expression.evaluate(dimensions(), n_particles(), x, end, value_[k].data());
+    if (half_step) continue;
+    expression.evaluate(dimensions(), n_particles(), x, end + delta, rate_[k].data());
+    expression.evaluate(dimensions(), n_particles(), x, end - delta, before.data());
+    for (std::uint64_t i = 0; i < n_particles(); ++i) rate_[k][i] = (rate_[k][i] - before[i]) / (2.0 * delta);
+  }
+}
+
+namespace {
+
+std::array<bool, 3> axes_of(const Param<std::vector<Choice>>& axes, int dimensions) {
+  if (!axes.is_set()) return {true, true, true};
+  std::array<bool, 3> chosen{};
+  for (const Choice& axis : axes.value()) {
+    if (axis == "z" && dimensions == 2) throw CaseError(axes.place() + ": there is no axis z in two dimensions");
+    chosen[static_cast<std::size_t>(axis.word[0] - 'x')] = true;
+  }
+  return chosen;
+}
+
+}  // namespace
+
+void Clamp::build(const Builder& b) {
+  declare_loop(b);
+  for (const BodyIndex body : bodies.value()) {
+    const auto setup = [&](PrescribedMotion& op) {
+      op.region = region_of(where, within, b.dimensions());
+      op.axes = axes_of(axes, b.dimensions());
+    };
+    b.attach<PrescribedMotion>("solid.clamp", {SHOAL_INITIAL, "constraints"}, b.target(body), setup);
+    b.attach<PrescribedMotion>("solid.clamp", at_constraints, b.target(body), setup);
+  }
+}
+
+void PrescribedMotionPhysics::build(const Builder& b) {
+  declare_loop(b);
+  if (displacement.is_set() == velocity.is_set())
+    throw CaseError("solid.prescribed_motion needs either a displacement or a velocity");
+  for (const BodyIndex body : bodies.value()) {
+    const auto setup = [&](PrescribedMotion& op) {
+      op.region = region_of(where, within, b.dimensions());
+      op.axes = axes_of(axes, b.dimensions());
+      op.motion = displacement.is_set() ? Motion::displacement : Motion::velocity;
+      op.given = displacement.is_set() ? displacement.value() : velocity.value();
+    };
+    b.attach<PrescribedMotion>("solid.prescribed_motion", {SHOAL_INITIAL, "constraints"}, b.target(body), setup);
+    if (displacement.is_set())
+      b.attach<PrescribedMotion>("solid.prescribed_motion.half", at_half_motion, b.target(body), [&](auto& op) {
+        setup(op);
+        op.half_step = true;
+      });
+    b.attach<PrescribedMotion>("solid.prescribed_motion", at_constraints, b.target(body), setup);
+  }
+}
+
+}  // namespace shoal::solid

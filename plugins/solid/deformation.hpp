@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Deformation gradient and hourglass residual,
+//   F_i = sum_j (x_j - x_i) (x) G_ij,
+//   q_i = alpha mu / dx^2 r_i,   r_i = -sum_j (x_j - x_i) psi_ij,
+// the second being the derivative of the energy 1/2 alpha mu |r_i|^2 / dx^2 of modes that F does not see. It is a
+// function of the particles' positions alone, so energy is conserved, and it turns with the body, so angular momentum
+// is too. F is exact for linear motions on any arrangement of particles. Weights: reference_weights.hpp.
+#pragma once
+
+#include <algorithm>
+
+#include "pair_sums.hpp"
+#include "structure.hpp"
+
+namespace shoal::solid {
+
+struct DeformationGradient : ReferenceOperator {
+  In<Vector> reference_position{"reference_position", own_only};
+  In<Scalar> volume{"volume", own_only};
+  In<Vector> position{"position"};
+  Out<Matrix> F{"deformation_gradient", derived};
+  Out<Vector> hourglass{"hourglass_stress", unit("N/m3"), doc("Resistance to modes that alternate between particles."),
+                        derived};
+
+  void begin() {
+    if (!structure->weights.built())
+      structure->weights.build(dimensions(), structure->settings, neighbours(0), reference_position.data(),
+                               volume.data());
+    stiffness_ = structure->hourglass / (structure->settings.spacing * structure->settings.spacing);
+  }
+
+  template <int D>
+  void run_chunk(const shoal_chunk& chunk) const {
+    const double* x = position.of_neighbours(0);
+    double *gradient = F.data(), *q = hourglass.data();
+    for (std::uint64_t i = chunk.begin; i < chunk.end; ++i) {
+      const auto [f, residual] = deformation<D>(row_of(neighbours(0), i), structure->weights.forward(i), x, i);
+      std::copy_n(f.e, D * D, gradient + i * D * D);
+      for (int a = 0; a < D; ++a) q[i * D + static_cast<std::uint64_t>(a)] = stiffness_ * residual[a];
+    }
+  }
+
+ private:
+  double stiffness_ = 0;  // N/m4
+};
+
+}  // namespace shoal::solid

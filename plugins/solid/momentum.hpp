@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Internal force,
+//   rho0 a_i = sum_j [P_i G_ij - V_j / V_i P_j G_ji] - sum_j [q_i psi_ij - V_j / V_i q_j psi_ji],
+// the exact transpose of F and of the hourglass residual (deformation.hpp): it is the gradient of the discrete energy
+// sum_i V_i [W(F_i) + 1/2 alpha mu |r_i|^2 / dx^2], so linear and angular momentum are conserved to rounding, and
+// energy by a symplectic integrator to its order.
+#pragma once
+
+#include "pair_sums.hpp"
+#include "structure.hpp"
+
+namespace shoal::solid {
+
+struct InternalForce : ReferenceOperator {
+  In<Matrix> P{"piola_stress", unit("Pa"), doc("First Piola-Kirchhoff stress.")};
+  In<Vector> hourglass{"hourglass_stress", unit("N/m3"), doc("Resistance to modes that alternate between particles.")};
+  Out<Vector> acceleration{"internal_acceleration", unit("m/s2"), doc("Acceleration by the body's own stress."),
+                           derived};
+
+  template <int D>
+  void run_chunk(const shoal_chunk& chunk) const {
+    structure->hourglass > 0.0 ? rows<D, true>(chunk) : rows<D, false>(chunk);
+  }
+
+ private:
+  template <int D, bool Hourglass>
+  void rows(const shoal_chunk& chunk) const {
+    const double *stress = P.of_neighbours(0), *q = hourglass.of_neighbours(0);
+    const double per_density = 1.0 / structure->constants.density;
+    double* a = acceleration.data();
+    const ReferenceWeights& weights = structure->weights;
+    for (std::uint64_t i = chunk.begin; i < chunk.end; ++i) {
+      const Vec<D> f =
+          force<D, Hourglass>(row_of(neighbours(0), i), weights.backward(i), weights.sums(i), stress, q, i);
+      for (int k = 0; k < D; ++k) a[i * D + static_cast<std::uint64_t>(k)] = per_density * f[k];
+    }
+  }
+};
+
+}  // namespace shoal::solid

@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the total Lagrangian scheme keeps of the reference configuration: for each pair (i, j) of neighbours the
+// weight G_ij of the gradient and the weight psi_ij of the hourglass residual,
+//   grad f_i = sum_j (f_j - f_i) G_ij,      residual_i = -sum_j (f_j - f_i) psi_ij.
+//
+// Around i a field is taken as f_j - f_i = c . p_ij with the monomials p_ij = (X, Y, X^2, X Y, Y^2) of
+// (X_j - X_i) / h, and c minimises sum_j w_ij (f_j - f_i - c . p_ij)^2, w_ij = V_j W_ij. With the moments
+// M = sum_j w p p^T, m = sum_j w p, s = sum_j w:
+//   G_ij   = w_ij / h (rows of the gradient of M^-1) p_ij,
+//   psi_ij = w_ij (1 - p_ij . M^-1 m) / s.
+// The residual is what of f the same fit with a free value at i does not explain, so it vanishes for quadratic
+// fields (bending is not stiffened) and not for modes that alternate from particle to particle, which no gradient
+// sees. It is scaled so that its gain on f_i stays below one where neighbours are on one side only.
+//
+// eps (M_XX + M_YY) is added to the diagonal of the quadratic terms: linear fields stay exact, and the weights of
+// disordered particles at surfaces lose their peaks, which would cost time step. Where neighbours are too few for the
+// quadratic fit, and if `quadratic` is off, G is that of Bonet and Lok (1999), exact for linear fields:
+//   G_ij = V_j B_i grad W_ij,   B_i = (sum_j V_j (X_j - X_i) (x) grad W_ij)^-1.
+//
+// Both weights of both directions are kept, 16 (D + 1) bytes a pair: recomputing those of j would need its moments.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include "shoal/abi.h"
+
+namespace shoal::solid {
+
+// Numbers aligned as SIMD loads like them, zero at first, with a few more behind the last.
+class AlignedNumbers {
+ public:
+  void assign(std::size_t n);
+  double* data() { return data_.get(); }
+  const double* data() const { return data_.get(); }
+  std::size_t size() const { return n_; }
+
+ private:
+  struct Delete {
+    void operator()(double* p) const { ::operator delete[](p, std::align_val_t(64)); }
+  };
+  std::unique_ptr<double[], Delete> data_;
+  std::size_t n_ = 0;
+};
+
+struct ReferenceSettings {
+  bool quadratic = true;
+  double smoothing_length = 0;  // m, of the Wendland C2 weight
+  double spacing = 0;           // m
+  double eps = 0.01;
+};
+
+// Isotropic constants for the estimate of the largest frequency.
+struct Stiffness {
+  double lambda = 0, mu = 0;  // Pa
+  double hourglass = 0;       // Pa, modulus of the hourglass control
+  double density = 0;         // kg/m3
+};
+
+class ReferenceWeights {
+ public:
+  bool built() const { return n_ > 0; }
+  // Throws CaseError if the list holds images (of periodic or mirror faces).
+  void build(int dimensions, const ReferenceSettings& settings, const shoal_neighbours& list, const double* position,
+             const double* volume);
+
+  // Weights of the pairs of row i, `stride` numbers each: G, then psi.
+  const double* forward(std::uint64_t i) const { return forward_.data() + offsets_[i] * stride_; }
+  // The same of the neighbours towards i, V_j / V_i G_ji, V_j / V_i psi_ji.
+  const double* backward(std::uint64_t i) const { return backward_.data() + offsets_[i] * stride_; }
+  // Sums of the forward weights of row i.
+  const double* sums(std::uint64_t i) const { return sums_.data() + i * stride_; }
+
+  // Largest angular frequency (rad/s) of the undeformed discrete body, by power iteration; a per cent or so from below.
+  double largest_frequency(const shoal_neighbours& list, const Stiffness& stiffness) const;
+  // sum_j (G_ij - V_j / V_i G_ji) of particle i, 1/m: the force of a uniform stress, zero for no force.
+  void residual(std::uint64_t i, std::uint32_t count, double* out) const;
+  std::uint64_t bytes() const;
+
+ private:
+  template <int D>
+  void fill(const ReferenceSettings& settings, const shoal_neighbours& list, const double* position,
+            const double* volume);
+  template <int D>
+  void mirror(const shoal_neighbours& list, const double* volume);
+  template <int D>
+  double power_iteration(const shoal_neighbours& list, const Stiffness& stiffness) const;
+
+  std::uint64_t n_ = 0;
+  int dimensions_ = 0;
+  std::size_t stride_ = 0;
+  double spacing_ = 0;
+  std::vector<std::uint64_t> offsets_;
+  AlignedNumbers forward_, backward_, sums_;
+};
+
+}  // namespace shoal::solid

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Part of a body, chosen by a condition on reference positions, or by a shape, or by both.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "shoal/parameters.hpp"
+
+namespace shoal::solid {
+
+class Region {
+ public:
+  Expression where;              // without it: everything
+  std::shared_ptr<void> shape;   // made by `api`
+  const shoal_shape_api* api = nullptr;
+
+  // Finds out whether each particle belongs to it.
+  void look(int dimensions, std::uint64_t n, const double* reference_position) {
+    inside_.assign(n, 1);
+    std::vector<double> value(n);
+    if (where) {
+      where.evaluate(dimensions, n, reference_position, 0.0, value.data());
+      for (std::uint64_t i = 0; i < n; ++i) inside_[i] = value[i] != 0.0;
+    }
+    if (!shape) return;
+    std::vector<double> points(3 * n, 0.0);
+    const auto d = static_cast<std::size_t>(dimensions);
+    for (std::uint64_t i = 0; i < n; ++i)
+      for (std::size_t a = 0; a < d; ++a) points[3 * i + a] = reference_position[d * i + a];
+    check_host(api->distance(shape.get(), n, points.data(), value.data()));
+    for (std::uint64_t i = 0; i < n; ++i)
+      if (value[i] > 0.0) inside_[i] = 0;
+  }
+  bool looked() const { return !inside_.empty(); }
+  bool holds(std::uint64_t i) const { return inside_[i] != 0; }
+
+ private:
+  std::vector<std::uint8_t> inside_;
+};
+
+inline Region region_of(const Param<Expression>& where, const Param<ObjectHandle>& within, int dimensions) {
+  Region region;
+  if (where.is_set()) region.where = where.value();
+  if (within.is_set()) {
+    const shoal_object* object = within->object;
+    region.api = static_cast<const shoal_shape_api*>(object->type->api);
+    void* self = nullptr;
+    check_host(region.api->create(object, dimensions, &self));
+    region.shape = std::shared_ptr<void>(self, region.api->destroy);
+  }
+  return region;
+}
+
+}  // namespace shoal::solid

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the operators of one solid body share.
+#pragma once
+
+#include <memory>
+
+#include "reference_weights.hpp"
+#include "shoal/interfaces/stress_law.h"
+#include "shoal/physics.hpp"
+
+namespace shoal::solid {
+
+using StressLaw = Interface<shoal_stress_law>;
+
+struct Structure {
+  StressLaw law;
+  shoal_elastic_constants constants{};
+  std::uint32_t kinematics = SHOAL_THREE_DIMENSIONAL;
+  ReferenceSettings settings;
+  double hourglass = 0;  // modulus of the hourglass control, Pa
+  ReferenceWeights weights;
+
+  Stiffness stiffness() const {
+    // The modulus of longitudinal waves is lambda + 2 mu; in plane stress that of a plate.
+    const double rho = constants.density, mu = constants.shear_modulus;
+    return {rho * constants.longitudinal_speed * constants.longitudinal_speed - 2.0 * mu, mu, hourglass, rho};
+  }
+};
+using SharedStructure = std::shared_ptr<Structure>;
+
+// The reference neighbourhood of the scheme: its radius is chosen by the physics, whatever the body's smoothing length.
+inline Target reference_target(const Builder& builder, BodyIndex body, const Structure& structure) {
+  Target target = builder.target(body);
+  target.smoothing_kernel = SmoothingKernel::wendland_c2;
+  target.smoothing_length = structure.settings.smoothing_length;
+  target.cutoff = 2.0 * structure.settings.smoothing_length;
+  target.configuration = SHOAL_REFERENCE;
+  return target;
+}
+
+// Operators over pairs of the reference configuration with stored weights.
+class ReferenceOperator : public OperatorBase {
+ public:
+  static constexpr bool pairs = true;
+  SharedStructure structure;
+
+ protected:
+  ReferenceOperator() : OperatorBase(true) {}
+};
+
+}  // namespace shoal::solid

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+#include "total_lagrangian.hpp"
+
+#include <cstdio>
+
+#include "deformation.hpp"
+#include "loads.hpp"
+#include "momentum.hpp"
+#include "stages.hpp"
+#include "stress.hpp"
+#include "structure_step.hpp"
+
+namespace shoal::solid {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+SharedStructure structure_of(const TotalLagrangian& physics, const Builder& b, BodyIndex body) {
+  auto structure = std::make_shared<Structure>();
+  structure->law = b.material_interface<shoal_stress_law>(body, SHOAL_STRESS_LAW, SHOAL_STRESS_LAW_REVISION);
+  if (!structure->law)
+    throw CaseError(std::string("body '") + b.body(body).name +
+                    "' needs a material with a stress law, e.g. material: {solid.neo_hookean: {density: 1000, "
+                    "young: 1e6, poisson: 0.3}}");
+  if (b.dimensions() == 2)
+    structure->kinematics = physics.plane.value() == "stress" ? SHOAL_PLANE_STRESS : SHOAL_PLANE_STRAIN;
+  structure->constants.size = sizeof structure->constants;
+  structure->law.api->constants(structure->law.self, structure->kinematics, &structure->constants);
+  const double dx = b.body(body).spacing;
+  structure->settings = {physics.gradient.value() == "quadratic", 0.5 * physics.support * dx, dx, physics.regularisation};
+  structure->hourglass = physics.hourglass * structure->constants.shear_modulus;
+  return structure;
+}
+
+struct SolidBody {
+  const Builder& b;
+  const TotalLagrangian& physics;
+  BodyIndex body;
+  SharedStructure structure = structure_of(physics, b, body);
+
+  Target itself() const { return b.target(body); }
+  Target reference() const { return reference_target(b, body, *structure); }
+
+  template <class Op>
+  void declare_law_fields(Op& op, bool writes) const {
+    std::uint32_t n = 0;
+    const shoal_access* fields = structure->law.api->fields(structure->law.self, structure->kinematics, &n);
+    op.law_fields.declare(n, fields, writes);
+    op.structure = structure;
+  }
+
+  void attach_initial() const {
+    b.attach<InitialState>("solid.initial_state", {SHOAL_INITIAL, "state"}, itself(),
+                           [&](auto& op) { declare_law_fields(op, true); });
+  }
+  void attach_step() const {
+    b.attach<Drift>("solid.drift", at_drift, itself());
+    b.attach<DeformationGradient>("solid.deformation_gradient", at_deformation, reference(),
+                                  [&](auto& op) { op.structure = structure; });
+    b.attach<Stress>("solid.stress", at_stress, itself(), [&](auto& op) { declare_law_fields(op, true); });
+    b.attach<InternalForce>("solid.internal_force", at_forces, reference(),
+                            [&](auto& op) { op.structure = structure; });
+    b.own_field(body, "acceleration", at_forces);
+    const Vector3 g = b.gravity();
+    if (g != Vector3{})
+      b.attach<Gravity>("solid.gravity", at_forces, itself(), [&](auto& op) { op.gravity = g; });
+    b.attach<Kick>("solid.kick", at_kick, itself());
+    b.attach<StableStep>("solid.stable_step", at_kick, reference(), [&](auto& op) {
+      op.structure = structure;
+      op.factor = physics.step_factor;
+    });
+  }
+};
+
+}  // namespace
+
+void TotalLagrangian::build(const Builder& b) {
+  declare_loop(b);
+  for (const BodyIndex body : bodies.value()) {
+    const SolidBody solid{b, *this, body};
+    b.body_moves(body);
+    const shoal_elastic_constants& constants = solid.structure->constants;
+    b.note(std::string(b.body(body).name) + ": speed of longitudinal waves " + number(constants.longitudinal_speed) +
+           " m/s, of shear waves " + number(constants.shear_speed) + " m/s");
+    solid.attach_initial();
+    solid.attach_step();
+  }
+}
+
+}  // namespace shoal::solid
