@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shoal/plugin.hpp"
 #include "constraints.hpp"
+#include "load_physics.hpp"
+#include "point_probe.hpp"
 #include "total_lagrangian.hpp"
 #include "tmp_material.hpp"
 
@@ -15,4 +17,9 @@ SHOAL_PLUGIN(solid, "0.1.0") {
   add<TmpLaw>("solid.tmp", "tmp");
   add<Clamp>("solid.clamp", "Particles that are held where they are, or in some directions only.");
   add<PrescribedMotionPhysics>("solid.prescribed_motion", "Particles whose displacement or velocity is given.");
+  add<Traction>("solid.traction", "Force per area on a flat face of a body, in a fixed direction.");
+  add<Pressure>("solid.pressure", "Pressure on the surface of a body, which follows it as it deforms.");
+  add<PointForce>("solid.point_force", "A force on the particles around a point.");
+  add<Torque>("solid.torque", "A torque on a part of a body.");
+  add<PointProbe>("solid.point", "Displacement of a point of the body, on its surface too.");
 }

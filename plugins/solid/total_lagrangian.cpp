@@ -3,9 +3,11 @@
 #include "total_lagrangian.hpp"
 
 #include <cstdio>
+#include <utility>
 
 #include "deformation.hpp"
 #include "loads.hpp"
+#include "measures.hpp"
 #include "momentum.hpp"
 #include "stages.hpp"
 #include "stress.hpp"
@@ -57,6 +59,51 @@ struct SolidBody {
   void attach_initial() const {
     b.attach<InitialState>("solid.initial_state", {SHOAL_INITIAL, "state"}, itself(),
                            [&](auto& op) { declare_law_fields(op, true); });
+    b.attach<SurfaceArea>(
+        "solid.surface_area", {SHOAL_INITIAL, "state"}, reference(), [&](auto& op) { op.structure = structure; },
+        SHOAL_OPERATOR_ON_DEMAND);
+  }
+  // What outputs and probes ask for: each runs only if somebody does.
+  template <class Op, class Setup>
+  void on_demand(const char* name, Target target, Setup&& setup) const {
+    b.attach<Op>(name, {SHOAL_SAMPLE, "measures"}, std::move(target), std::forward<Setup>(setup),
+                 SHOAL_OPERATOR_ON_DEMAND);
+  }
+  template <class Op>
+  void on_demand(const char* name) const {
+    on_demand<Op>(name, itself(), [](Op&) {});
+  }
+  void attach_current_state() const {
+    on_demand<DeformationGradient>("solid.deformation_gradient.current", reference(), [&](auto& op) {
+      op.structure = structure;
+      op.F.rename("current_deformation_gradient");
+      op.hourglass.rename("current_hourglass_stress");
+    });
+    on_demand<Stress>("solid.stress.current", itself(), [&](auto& op) {
+      declare_law_fields(op, false);
+      op.trial = true;
+      op.F.rename("current_deformation_gradient");
+      op.P.rename("current_piola_stress");
+    });
+    on_demand<InternalForce>("solid.internal_force.current", reference(), [&](auto& op) {
+      op.structure = structure;
+      op.P.rename("current_piola_stress");
+      op.hourglass.rename("current_hourglass_stress");
+      op.acceleration.rename("current_internal_acceleration");
+    });
+  }
+  void attach_measures() const {
+    attach_current_state();
+    on_demand<Displacement>("solid.displacement");
+    on_demand<CauchyStress>("solid.cauchy_stress", itself(), [&](auto& op) { declare_law_fields(op, false); });
+    on_demand<VonMises>("solid.von_mises");
+    on_demand<PrincipalStress>("solid.principal_stress");
+    on_demand<MeanPressure>("solid.pressure");
+    on_demand<StrainEnergy>("solid.strain_energy", itself(), [&](auto& op) { declare_law_fields(op, false); });
+    const double dx = structure->settings.spacing;
+    on_demand<HourglassEnergy>("solid.hourglass_energy", itself(),
+                               [&](auto& op) { op.stiffness = structure->hourglass / (dx * dx); });
+    on_demand<NonAffine>("solid.non_affine", reference(), [&](auto& op) { op.structure = structure; });
   }
   void attach_step() const {
     b.attach<Drift>("solid.drift", at_drift, itself());
@@ -69,6 +116,8 @@ struct SolidBody {
     const Vector3 g = b.gravity();
     if (g != Vector3{})
       b.attach<Gravity>("solid.gravity", at_forces, itself(), [&](auto& op) { op.gravity = g; });
+    if (physics.damping > 0.0)
+      b.attach<MassDamping>("solid.mass_damping", at_forces, itself(), [&](auto& op) { op.coefficient = physics.damping; });
     b.attach<Kick>("solid.kick", at_kick, itself());
     b.attach<StableStep>("solid.stable_step", at_kick, reference(), [&](auto& op) {
       op.structure = structure;
@@ -89,6 +138,7 @@ void TotalLagrangian::build(const Builder& b) {
            " m/s, of shear waves " + number(constants.shear_speed) + " m/s");
     solid.attach_initial();
     solid.attach_step();
+    solid.attach_measures();
   }
 }
 

@@ -39,6 +39,8 @@ struct TotalLagrangian final : Physics {
                           "Strength of the control of modes that alternate between particles, over the shear modulus; "
                           "0: none.",
                           non_negative, default_to(0.5)};
+  Param<double> damping{"damping", "1/s", "Damping of the velocity in proportion to mass, to come to rest.", non_negative,
+                        default_to(0.0)};
   Param<double> step_factor{"step_factor", "1",
                             "Time step over the largest stable one of the undeformed body.", positive, at_most(1.0),
                             default_to(0.8)};
