@@ -16,18 +16,14 @@
 
 namespace shoal::solid {
 
-struct DeformationGradient : ReferenceOperator {
-  In<Vector> reference_position{"reference_position", own_only};
-  In<Scalar> volume{"volume", own_only};
+struct DeformationGradient : WeightBuilder {
   In<Vector> position{"position"};
   Out<Matrix> F{"deformation_gradient", derived};
   Out<Vector> hourglass{"hourglass_stress", unit("N/m3"), doc("Resistance to modes that alternate between particles."),
                         derived};
 
   void begin() {
-    if (!structure->weights.built())
-      structure->weights.build(dimensions(), structure->settings, neighbours(0), reference_position.data(),
-                               volume.data());
+    build_weights();
     stiffness_ = structure->hourglass / (structure->settings.spacing * structure->settings.spacing);
   }
 

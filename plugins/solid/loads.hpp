@@ -40,16 +40,10 @@ struct MassDamping : ParticleOperator<MassDamping> {
 };
 
 // The area vectors, once.
-struct SurfaceArea : ReferenceOperator {
-  In<Vector> reference_position{"reference_position", own_only};
-  In<Scalar> volume{"volume", own_only};
+struct SurfaceArea : WeightBuilder {
   Out<Vector> area{"reference_area", unit("m2"), doc("Outward area vector of the reference configuration.")};
 
-  void begin() {
-    if (!structure->weights.built())
-      structure->weights.build(dimensions(), structure->settings, neighbours(0), reference_position.data(),
-                               volume.data());
-  }
+  void begin() { build_weights(); }
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {
     for (std::uint64_t k = chunk.begin; k < chunk.end; ++k) {

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference_weights.hpp"
 
-// gcc 12 warns about its own AVX-512 headers; matrices of 5 and 9 rows gain nothing from them.
-#define EIGEN_DONT_VECTORIZE
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "force_consistency.hpp"
+#include "monomials.hpp"
 #include "pair_sums.hpp"
 #include "shoal/host.hpp"
 #include "shoal/smoothing_kernel.hpp"
@@ -18,24 +17,6 @@ namespace {
 
 // Loads of four numbers may begin at the last one.
 constexpr std::size_t behind = 8;
-
-template <int D>
-constexpr int n_monomials = D + D * (D + 1) / 2;
-template <int D>
-using Monomials = Eigen::Matrix<double, n_monomials<D>, 1>;
-template <int D>
-using Moments = Eigen::Matrix<double, n_monomials<D>, n_monomials<D>>;
-
-template <int D>
-Monomials<D> monomials(const Vec<D>& d) {
-  Monomials<D> p;
-  int k = D;
-  for (int a = 0; a < D; ++a) {
-    p[a] = d[a];
-    for (int b = a; b < D; ++b) p[k++] = d[a] * d[b];
-  }
-  return p;
-}
 
 // The neighbours of a particle as the fit sees them.
 template <int D>
@@ -98,9 +79,7 @@ class RowFit {
   // False if there are too few neighbours around for a quadratic fit.
   bool solve_quadratic() {
     const Eigen::LLT<Moments<D>> llt(moments_);
-    if (llt.info() != Eigen::Success) return false;
-    for (int k = 0; k < N; ++k)
-      if (!(std::pow(llt.matrixLLT()(k, k), 2) > 1e-6 * moments_(k, k))) return false;
+    if (!well_conditioned<D>(llt)) return false;
     const Eigen::Matrix<double, N, D> columns = llt.solve(Eigen::Matrix<double, N, D>::Identity());
     gradient_rows_ = columns.transpose();
     residual_row_ = llt.solve(first_);
@@ -132,7 +111,7 @@ void AlignedNumbers::assign(std::size_t n) {
 }
 
 void ReferenceWeights::build(int dimensions, const ReferenceSettings& settings, const shoal_neighbours& list,
-                             const double* position, const double* volume) {
+                             const ReferenceGeometry& geometry) {
   n_ = list.n_rows;
   dimensions_ = dimensions;
   spacing_ = settings.spacing;
@@ -149,20 +128,22 @@ void ReferenceWeights::build(int dimensions, const ReferenceSettings& settings, 
   forward_.assign(offsets_[n_] * stride_);
   backward_.assign(offsets_[n_] * stride_);
   sums_.assign(n_ * stride_);
-  dimensions == 2 ? fill<2>(settings, list, position, volume) : fill<3>(settings, list, position, volume);
-  dimensions == 2 ? mirror<2>(list, volume) : mirror<3>(list, volume);
+  dimensions == 2 ? fill<2>(settings, list, geometry) : fill<3>(settings, list, geometry);
+  dimensions == 2 ? mirror<2>(list, geometry.volume) : mirror<3>(list, geometry.volume);
 }
 
 template <int D>
-void ReferenceWeights::fill(const ReferenceSettings& settings, const shoal_neighbours& list, const double* position,
-                            const double* volume) {
+void ReferenceWeights::fill(const ReferenceSettings& settings, const shoal_neighbours& list,
+                            const ReferenceGeometry& geometry) {
   const WendlandC2<D> kernel(settings.smoothing_length);
   Surroundings<D> around;
   RowFit<D> fit(settings);
   for (std::uint64_t i = 0; i < n_; ++i) {
-    around.look(kernel, row_of(list, i), position, volume, i);
+    around.look(kernel, row_of(list, i), geometry.position, geometry.volume, i);
     fit(around, forward_.data() + offsets_[i] * stride_);
   }
+  if (!settings.consistent) return;
+  consistency_ = make_consistent<D>(settings, list, geometry, offsets_, forward_.data());
 }
 
 template <int D>

@@ -52,6 +52,19 @@ struct ReferenceSettings {
   double smoothing_length = 0;  // m, of the Wendland C2 weight
   double spacing = 0;           // m
   double eps = 0.01;
+  bool consistent = true;  // forces of a uniform stress vanish inside (force_consistency.hpp)
+};
+
+// Arrays of a body's particles in the reference configuration.
+struct ReferenceGeometry {
+  const double *position, *volume;
+  const double *normal, *distance;  // of the body's surface: outward, negative inside
+};
+
+// What making forces consistent came to (force_consistency.hpp).
+struct ForceConsistency {
+  double before = 0, after = 0;  // root mean square of the constrained part of r, times the spacing
+  int iterations = 0;
 };
 
 // Isotropic constants for the estimate of the largest frequency.
@@ -65,8 +78,8 @@ class ReferenceWeights {
  public:
   bool built() const { return n_ > 0; }
   // Throws CaseError if the list holds images (of periodic or mirror faces).
-  void build(int dimensions, const ReferenceSettings& settings, const shoal_neighbours& list, const double* position,
-             const double* volume);
+  void build(int dimensions, const ReferenceSettings& settings, const shoal_neighbours& list,
+             const ReferenceGeometry& geometry);
 
   // Weights of the pairs of row i, `stride` numbers each: G, then psi.
   const double* forward(std::uint64_t i) const { return forward_.data() + offsets_[i] * stride_; }
@@ -80,11 +93,11 @@ class ReferenceWeights {
   // sum_j (G_ij - V_j / V_i G_ji) of particle i, 1/m: the force of a uniform stress, zero for no force.
   void residual(std::uint64_t i, std::uint32_t count, double* out) const;
   std::uint64_t bytes() const;
+  const ForceConsistency& consistency() const { return consistency_; }
 
  private:
   template <int D>
-  void fill(const ReferenceSettings& settings, const shoal_neighbours& list, const double* position,
-            const double* volume);
+  void fill(const ReferenceSettings& settings, const shoal_neighbours& list, const ReferenceGeometry& geometry);
   template <int D>
   void mirror(const shoal_neighbours& list, const double* volume);
   template <int D>
@@ -94,6 +107,7 @@ class ReferenceWeights {
   int dimensions_ = 0;
   std::size_t stride_ = 0;
   double spacing_ = 0;
+  ForceConsistency consistency_;
   std::vector<std::uint64_t> offsets_;
   AlignedNumbers forward_, backward_, sums_;
 };

@@ -50,4 +50,19 @@ class ReferenceOperator : public OperatorBase {
   ReferenceOperator() : OperatorBase(true) {}
 };
 
+// One that may be the first to need the weights, and then makes them.
+class WeightBuilder : public ReferenceOperator {
+ protected:
+  void build_weights() const {
+    if (structure->weights.built()) return;
+    structure->weights.build(dimensions(), structure->settings, neighbours(0),
+                             {reference_position.data(), volume.data(), normal.data(), distance.data()});
+  }
+
+  In<Vector> reference_position{"reference_position", own_only};
+  In<Scalar> volume{"volume", own_only};
+  In<Vector> normal{"normal", own_only};
+  In<Scalar> distance{"signed_distance", own_only};
+};
+
 }  // namespace shoal::solid

@@ -10,6 +10,8 @@
 // iteration on the undeformed body, and scaled by the speed of waves where the law says that it stiffens.
 #pragma once
 
+#include <cstdio>
+
 #include "shoal/particle_operator.hpp"
 #include "structure.hpp"
 
@@ -47,9 +49,7 @@ struct Kick : ParticleOperator<Kick> {
 };
 
 // The largest step; looks at no particle but once.
-struct StableStep : ReferenceOperator {
-  In<Vector> reference_position{"reference_position", own_only};
-  In<Scalar> volume{"volume", own_only};
+struct StableStep : WeightBuilder {
   double factor = 0.8;  // of the limit of the undeformed body
 
   void begin() {}
@@ -58,11 +58,14 @@ struct StableStep : ReferenceOperator {
 
   double time_step(double) const {
     if (limit_ == 0.0) {
-      ReferenceWeights& weights = structure->weights;
-      if (!weights.built())
-        weights.build(dimensions(), structure->settings, neighbours(0), reference_position.data(), volume.data());
-      limit_ = 2.0 / weights.largest_frequency(neighbours(0), structure->stiffness());
-      log_debug("solid: largest frequency " + std::to_string(2.0 / limit_) + " rad/s");
+      build_weights();
+      limit_ = 2.0 / structure->weights.largest_frequency(neighbours(0), structure->stiffness());
+      const ForceConsistency& made = structure->weights.consistency();
+      char text[160];
+      std::snprintf(text, sizeof text,
+                    "solid: force of a uniform stress inside %.2g, made %.2g in %d iterations; largest frequency %.4g rad/s",
+                    made.before, made.after, made.iterations, 2.0 / limit_);
+      log_debug(text);
     }
     return factor * limit_;
   }

@@ -34,7 +34,7 @@ SharedStructure structure_of(const TotalLagrangian& physics, const Builder& b, B
   structure->constants.size = sizeof structure->constants;
   structure->law.api->constants(structure->law.self, structure->kinematics, &structure->constants);
   const double dx = b.body(body).spacing;
-  structure->settings = {physics.gradient.value() == "quadratic", 0.5 * physics.support * dx, dx, physics.regularisation};
+  structure->settings = {physics.gradient.value() == "quadratic", 0.5 * physics.support * dx, dx, physics.regularisation, physics.consistent};
   structure->hourglass = physics.hourglass * structure->constants.shear_modulus;
   return structure;
 }

@@ -35,6 +35,10 @@ struct TotalLagrangian final : Physics {
                                "Of the quadratic terms of the fit: more allows larger steps on disordered particles, "
                                "less is more accurate.",
                                non_negative, default_to(0.01)};
+  Param<bool> consistent{"consistent", nullptr,
+                         "Whether the weights of disordered particles are changed so that a uniform stress exerts no "
+                         "force inside the body; a lattice needs no change.",
+                         default_to(true)};
   Param<double> hourglass{"hourglass", "1",
                           "Strength of the control of modes that alternate between particles, over the shear modulus; "
                           "0: none.",

@@ -103,7 +103,7 @@ inline std::uint32_t components_of(std::uint32_t rank, int dimensions, std::uint
 
 template <class Op>
 void run_chunk(const Op& op, int dimensions, const shoal_chunk& chunk, bool scalar) {
-  if constexpr (Op::pairs) {
+  if constexpr (requires { op.template run_chunk_scalar<2>(chunk); }) {
     if (scalar) {
       dimensions == 2 ? op.template run_chunk_scalar<2>(chunk) : op.template run_chunk_scalar<3>(chunk);
       return;

@@ -1,0 +1,280 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The weights of the reference configuration against slow obvious code, and what they must be exact for.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "pair_sums.hpp"
+#include "particles.hpp"
+#include "shoal/smoothing_kernel.hpp"
+
+using namespace shoal;
+using namespace shoal::solid;
+using solid_test::dx;
+
+namespace {
+
+ReferenceWeights weights_of(testing::Body& body, const solid_test::Neighbours& neighbours,
+                            const ReferenceSettings& settings) {
+  ReferenceWeights weights;
+  weights.build(body.dimensions(), settings, neighbours.list, solid_test::geometry(body));
+  return weights;
+}
+
+// Solves m c = b by Gaussian elimination with pivoting.
+std::vector<long double> solve(std::vector<std::vector<long double>> m, std::vector<long double> b) {
+  const std::size_t n = b.size();
+  for (std::size_t c = 0; c < n; ++c) {
+    std::size_t pivot = c;
+    for (std::size_t r = c; r < n; ++r)
+      if (std::fabs(m[r][c]) > std::fabs(m[pivot][c])) pivot = r;
+    std::swap(m[c], m[pivot]);
+    std::swap(b[c], b[pivot]);
+    for (std::size_t r = 0; r < n; ++r) {
+      if (r == c) continue;
+      const long double factor = m[r][c] / m[c][c];
+      for (std::size_t k = c; k < n; ++k) m[r][k] -= factor * m[c][k];
+      b[r] -= factor * b[c];
+    }
+  }
+  for (std::size_t c = 0; c < n; ++c) b[c] /= m[c][c];
+  return b;
+}
+
+// Coefficients of the least-squares fit of values f around particle i: 1 (if it is free there), X, Y, ..., by the text
+// book. Lengths are in smoothing lengths.
+template <int D>
+std::vector<long double> fit(testing::Body& body, const std::vector<double>& f, std::size_t i, bool free_value,
+                             double eps) {
+  const double h = solid_test::settings().smoothing_length;
+  const WendlandC2<D> kernel(h);
+  const auto& x = body["reference_position"];
+  const std::size_t n = D + D * (D + 1) / 2 + (free_value ? 1 : 0);
+  std::vector<std::vector<long double>> m(n, std::vector<long double>(n, 0));
+  std::vector<long double> b(n, 0);
+  for (std::size_t j = 0; j < body.size(); ++j) {
+    if (i == j) continue;
+    double d[D], square = 0;
+    for (int a = 0; a < D; ++a) {
+      d[a] = (x[j * D + static_cast<std::size_t>(a)] - x[i * D + static_cast<std::size_t>(a)]) / h;
+      square += d[a] * d[a];
+    }
+    std::vector<long double> p;
+    if (free_value) p.push_back(1);
+    for (int a = 0; a < D; ++a) p.push_back(d[a]);
+    for (int a = 0; a < D; ++a)
+      for (int c = a; c < D; ++c) p.push_back(d[a] * d[c]);
+    const double w = body["volume"][j] * kernel.w(std::sqrt(square) * h);
+    for (std::size_t r = 0; r < n; ++r) {
+      b[r] += w * p[r] * (f[j] - f[i]);
+      for (std::size_t c = 0; c < n; ++c) m[r][c] += w * p[r] * p[c];
+    }
+  }
+  const std::size_t first = free_value ? 1 : 0;
+  long double linear = 0;
+  for (std::size_t k = first; k < first + D; ++k) linear += m[k][k];
+  for (std::size_t k = first + D; k < n; ++k) m[k][k] += eps * linear;
+  return solve(m, b);
+}
+
+template <int D>
+void compare_with_fit(double disorder) {
+  testing::Body body = solid_test::box(D, 7, disorder);
+  const solid_test::Neighbours neighbours(body);
+  ReferenceSettings settings = solid_test::settings();
+  settings.consistent = false;
+  const ReferenceWeights weights = weights_of(body, neighbours, settings);
+  std::vector<double> f, values;
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    f.push_back(std::sin(17.3 * static_cast<double>(i)));
+    for (int a = 0; a < D; ++a) values.push_back(f.back());
+  }
+  for (std::size_t i = 0; i < body.size(); i += 5) {
+    const auto [gradient, residual] =
+        deformation<D>(row_of(neighbours.list, i), weights.forward(i), values.data(), i);
+    const auto expected = fit<D>(body, f, i, false, settings.eps);
+    for (int a = 0; a < D; ++a)
+      CHECK(gradient(0, a) == doctest::Approx(static_cast<double>(expected[static_cast<std::size_t>(a)]) /
+                                              settings.smoothing_length)
+                                  .epsilon(1e-9));
+    // The residual is -c_0 times the part of 1 that the monomials do not explain.
+    const auto value = fit<D>(body, f, i, true, settings.eps);
+    std::vector<double> one(body.size(), 1.0);
+    one[i] = 0.0;
+    double gain = 0;
+    const double* w = weights.forward(i);
+    for (std::uint32_t m = 0; m < neighbours.rows.counts[i]; ++m) gain += w[m * (D + 1) + D];
+    CHECK(residual[0] == doctest::Approx(-gain * static_cast<double>(value[0])).epsilon(1e-9));
+    CHECK(gain > 0.0);
+    CHECK(gain < 1.0);
+  }
+}
+
+// Largest difference of F from the gradient of a polynomial motion, and the largest residual over the spacing.
+template <int D, class Motion, class Gradient>
+std::array<double, 2> errors(const ReferenceSettings& settings, double disorder, Motion&& motion, Gradient&& exact) {
+  testing::Body body = solid_test::box(D, 8, disorder);
+  const solid_test::Neighbours neighbours(body);
+  const ReferenceWeights weights = weights_of(body, neighbours, settings);
+  const auto& X = body["reference_position"];
+  std::vector<double> x(X.size() + 4);
+  const auto at = [&](std::size_t i) {
+    Vec<D> place;
+    for (int a = 0; a < D; ++a) place[a] = X[i * D + static_cast<std::size_t>(a)];
+    return place;
+  };
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    const Vec<D> moved = motion(at(i));
+    std::copy_n(moved.e, D, x.data() + i * D);
+  }
+  double gradient_error = 0, residual_error = 0;
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    const auto [gradient, residual] = deformation<D>(row_of(neighbours.list, i), weights.forward(i), x.data(), i);
+    const Mat<D> difference = gradient - exact(at(i));
+    gradient_error = std::max(gradient_error, std::sqrt(double_dot(difference, difference)));
+    residual_error = std::max(residual_error, norm(residual) / dx);
+  }
+  return {gradient_error, residual_error};
+}
+
+template <int D>
+Mat<D> some_matrix() {
+  Mat<D> A;
+  for (int k = 0; k < D * D; ++k) A[k] = std::sin(3.0 * k + 1.0) + (k % (D + 1) == 0 ? 1.5 : 0.0);
+  return A;
+}
+
+}  // namespace
+
+TEST_CASE("weights are those of a least-squares fit") {
+  compare_with_fit<2>(0.0);
+  compare_with_fit<2>(0.2);
+  compare_with_fit<3>(0.2);
+}
+
+TEST_CASE("linear motions are exact on any arrangement") {
+  const auto check = []<int D>(bool quadratic, double disorder) {
+    const Mat<D> A = some_matrix<D>();
+    ReferenceSettings settings = solid_test::settings();
+    settings.quadratic = quadratic;
+    const auto [gradient, residual] =
+        errors<D>(settings, disorder, [&](const Vec<D>& X) { return A * X; }, [&](const Vec<D>&) { return A; });
+    CHECK(gradient < 1e-11);
+    CHECK(residual < 1e-11);
+  };
+  for (const double disorder : {0.0, 0.2})
+    for (const bool quadratic : {true, false}) {
+      check.operator()<2>(quadratic, disorder);
+      check.operator()<3>(quadratic, disorder);
+    }
+}
+
+TEST_CASE("quadratic motions are exact without regularisation, also where weights were made consistent") {
+  const auto check = []<int D>(double disorder) {
+    ReferenceSettings settings = solid_test::settings();
+    settings.eps = 0.0;
+    const auto [gradient, residual] = errors<D>(
+        settings, disorder,
+        [](const Vec<D>& X) {
+          Vec<D> x = X;
+          x[0] += 0.4 * X[0] * X[1] - 0.2 * X[1] * X[1];
+          x[1] += 0.3 * X[0] * X[0];
+          return x;
+        },
+        [](const Vec<D>& X) {
+          Mat<D> F = identity<D>();
+          F(0, 0) += 0.4 * X[1];
+          F(0, 1) += 0.4 * X[0] - 0.4 * X[1];
+          F(1, 0) += 0.6 * X[0];
+          return F;
+        });
+    CHECK(gradient < 1e-9);
+    CHECK(residual < 1e-9);
+  };
+  check.operator()<2>(0.0);
+  check.operator()<2>(0.1);
+  check.operator()<3>(0.1);
+}
+
+TEST_CASE("a uniform stress exerts no force inside, and the area vectors close the surface") {
+  const auto check = []<int D>(double disorder, double most) {
+    testing::Body body = solid_test::box(D, 12, disorder);
+    const solid_test::Neighbours neighbours(body);
+    const double volume = std::pow(dx, D);
+    double rms[2];
+    for (const bool consistent : {false, true}) {
+      ReferenceSettings settings = solid_test::settings();
+      settings.consistent = consistent;
+      const ReferenceWeights weights = weights_of(body, neighbours, settings);
+      double square = 0, first_moment[D] = {}, sum[D] = {};
+      std::size_t n = 0;
+      for (std::size_t i = 0; i < body.size(); ++i) {
+        double r[D];
+        weights.residual(i, neighbours.rows.counts[i], r);
+        for (int a = 0; a < D; ++a) {
+          sum[a] += r[a] * dx;
+          first_moment[a] -= volume * r[a] * body["reference_position"][i * D + static_cast<std::size_t>(a)];
+        }
+        if (body["signed_distance"][i] > -2.0 * settings.smoothing_length) continue;
+        ++n;
+        for (int a = 0; a < D; ++a) square += r[a] * dx * r[a] * dx;
+      }
+      rms[consistent] = std::sqrt(square / static_cast<double>(n));
+      for (int a = 0; a < D; ++a) {
+        CHECK(std::fabs(sum[a]) < 1e-9);
+        // The divergence theorem: the integral of x N_x over the surface is the volume.
+        CHECK(first_moment[a] == doctest::Approx(volume * static_cast<double>(body.size())).epsilon(1e-10));
+      }
+    }
+    INFO("before ", rms[0], " after ", rms[1]);
+    CHECK(rms[1] < most);
+    if (disorder == 0.0)
+      CHECK(rms[0] < 1e-12);
+    else
+      CHECK(rms[1] < 0.1 * rms[0]);
+  };
+  check.operator()<2>(0.0, 1e-12);
+  check.operator()<2>(0.2, 0.05);
+  check.operator()<3>(0.2, 0.05);
+}
+
+TEST_CASE("the largest frequency is that of the explicit step's limit") {
+  testing::Body body = solid_test::box(2, 8, 0.1);
+  const solid_test::Neighbours neighbours(body);
+  const ReferenceWeights weights = weights_of(body, neighbours, solid_test::settings());
+  const Stiffness stiffness{1e6, 4e5, 2e5, 1000.0};
+  const double limit = 2.0 / weights.largest_frequency(neighbours.list, stiffness);
+  // Verlet, from a small random displacement.
+  const auto growth = [&](double dt) {
+    const std::size_t n = body.size();
+    std::vector<double> u(2 * n + 4), v(2 * n), P(4 * n + 4), q(2 * n + 4);
+    for (std::size_t k = 0; k < 2 * n; ++k) u[k] = 1e-6 * std::sin(12.9898 * static_cast<double>(k));
+    double largest = 0;
+    for (int step = 0; step < 2000; ++step) {
+      for (std::size_t i = 0; i < n; ++i) {
+        const auto [gradient, residual] = deformation<2>(row_of(neighbours.list, i), weights.forward(i), u.data(), i);
+        const Mat<2> strain = symmetric_part(gradient);
+        const Mat<2> s = stiffness.lambda * trace(strain) * identity<2>() + 2.0 * stiffness.mu * strain;
+        std::copy_n(s.e, 4, P.data() + 4 * i);
+        for (int a = 0; a < 2; ++a)
+          q[2 * i + static_cast<std::size_t>(a)] = stiffness.hourglass / (dx * dx) * residual[a];
+      }
+      for (std::size_t i = 0; i < n; ++i) {
+        const Vec<2> f = force<2, true>(row_of(neighbours.list, i), weights.backward(i), weights.sums(i), P.data(),
+                                        q.data(), i);
+        for (int a = 0; a < 2; ++a) v[2 * i + static_cast<std::size_t>(a)] += dt / stiffness.density * f[a];
+      }
+      largest = 0;
+      for (std::size_t k = 0; k < 2 * n; ++k) {
+        u[k] += dt * v[k];
+        if (!(std::fabs(u[k]) < largest)) largest = std::fabs(u[k]);
+      }
+    }
+    return std::isfinite(largest) ? largest / 1e-6 : HUGE_VAL;
+  };
+  CHECK(growth(0.97 * limit) < 100.0);
+  CHECK(growth(1.03 * limit) > 1e6);
+}
