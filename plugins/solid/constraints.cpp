@@ -40,7 +40,8 @@ std::array<bool, 3> axes_of(const Param<std::vector<Choice>>& axes, int dimensio
   if (!axes.is_set()) return {true, true, true};
   std::array<bool, 3> chosen{};
   for (const Choice& axis : axes.value()) {
-    if (axis == "z" && dimensions == 2) throw CaseError(axes.place() + ": there is no axis z in two dimensions");
+    if (axis == "z" && dimensions == 2)
+      throw CaseError(axes.place() + ": there is no axis z in two dimensions");
     chosen[static_cast<std::size_t>(axis.word[0] - 'x')] = true;
   }
   return chosen;
@@ -71,12 +72,14 @@ void PrescribedMotionPhysics::build(const Builder& b) {
       op.motion = displacement.is_set() ? Motion::displacement : Motion::velocity;
       op.given = displacement.is_set() ? displacement.value() : velocity.value();
     };
-    b.attach<PrescribedMotion>("solid.prescribed_motion", {SHOAL_INITIAL, "constraints"}, b.target(body), setup);
+    b.attach<PrescribedMotion>("solid.prescribed_motion", {SHOAL_INITIAL, "constraints"}, b.target(body),
+                               setup);
     if (displacement.is_set())
-      b.attach<PrescribedMotion>("solid.prescribed_motion.half", at_half_motion, b.target(body), [&](auto& op) {
-        setup(op);
-        op.half_step = true;
-      });
+      b.attach<PrescribedMotion>("solid.prescribed_motion.half", at_half_motion, b.target(body),
+                                 [&](auto& op) {
+                                   setup(op);
+                                   op.half_step = true;
+                                 });
     b.attach<PrescribedMotion>("solid.prescribed_motion", at_constraints, b.target(body), setup);
   }
 }

@@ -50,31 +50,47 @@ struct PrescribedMotion : ParticleOperator<PrescribedMotion> {
 
 struct Clamp final : Physics {
   Param<std::vector<BodyIndex>> bodies{"bodies", nullptr, "Solid bodies.", example("[beam]")};
-  Param<Expression> where{"where", "1",
-                          "Condition on the reference position (x, y, z) that the held particles meet; a clamp at a "
-                          "plane should hold the first row of particles in front of it too.",
-                          optional, example("x < dx")};
-  Param<ObjectHandle> within{"within", nullptr, "Shape whose particles are held.", ObjectsOf{SHOAL_TYPE_SHAPE}, optional,
+  Param<Expression> where{
+      "where", "1",
+      "Condition on the reference position (x, y, z) that the held particles meet; a clamp at a "
+      "plane should hold the first row of particles in front of it too.",
+      optional, example("x < dx")};
+  Param<ObjectHandle> within{"within",
+                             nullptr,
+                             "Shape whose particles are held.",
+                             ObjectsOf{SHOAL_TYPE_SHAPE},
+                             optional,
                              example("{ball: {centre: [0.2, 0.2], radius: 0.05}}")};
-  Param<std::vector<Choice>> axes{"axes", nullptr, "Directions that are held; all without it. A plane of symmetry "
+  Param<std::vector<Choice>> axes{"axes",
+                                  nullptr,
+                                  "Directions that are held; all without it. A plane of symmetry "
                                   "holds its normal.",
-                                  one_of("x", "y", "z"), optional, example("[x]")};
+                                  one_of("x", "y", "z"),
+                                  optional,
+                                  example("[x]")};
   void build(const Builder& builder);
 };
 
 struct PrescribedMotionPhysics final : Physics {
   Param<std::vector<BodyIndex>> bodies{"bodies", nullptr, "Solid bodies.", example("[beam]")};
-  Param<Expression> where{"where", "1", "Condition on the reference position (x, y, z) that the particles meet.",
-                          optional, example("x > L - 4*dx")};
-  Param<ObjectHandle> within{"within", nullptr, "Shape whose particles are moved.", ObjectsOf{SHOAL_TYPE_SHAPE},
-                             optional, example("{box: {lower: [0, 0], upper: [0.1, 1]}}")};
-  Param<std::vector<Choice>> axes{"axes", nullptr, "Directions that are prescribed; all without it.",
-                                  one_of("x", "y", "z"), optional, example("[x]")};
+  Param<Expression> where{"where", "1",
+                          "Condition on the reference position (x, y, z) that the particles meet.", optional,
+                          example("x > L - 4*dx")};
+  Param<ObjectHandle> within{"within",
+                             nullptr,
+                             "Shape whose particles are moved.",
+                             ObjectsOf{SHOAL_TYPE_SHAPE},
+                             optional,
+                             example("{box: {lower: [0, 0], upper: [0.1, 1]}}")};
+  Param<std::vector<Choice>> axes{
+      "axes",   nullptr,       "Directions that are prescribed; all without it.", one_of("x", "y", "z"),
+      optional, example("[x]")};
   Param<VectorExpression> displacement{"displacement", "m",
-                                       "Displacement as expressions of the reference position and t.", optional,
-                                       example("[\"0.1*t\", 0]")};
-  Param<VectorExpression> velocity{"velocity", "m/s", "Velocity as expressions of the reference position and t.",
-                                   optional, example("[0, \"sin(10*t)\"]")};
+                                       "Displacement as expressions of the reference position and t.",
+                                       optional, example("[\"0.1*t\", 0]")};
+  Param<VectorExpression> velocity{"velocity", "m/s",
+                                   "Velocity as expressions of the reference position and t.", optional,
+                                   example("[0, \"sin(10*t)\"]")};
   void build(const Builder& builder);
 };
 

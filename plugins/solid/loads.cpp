@@ -19,7 +19,8 @@ void LoadedRegion::look(int dimensions, std::uint64_t n, const double* reference
   values_.resize(particles_.size());
 }
 
-void LoadedRegion::evaluate(const Expression& expression, int dimensions, double time, std::vector<double>& out) const {
+void LoadedRegion::evaluate(const Expression& expression, int dimensions, double time,
+                            std::vector<double>& out) const {
   expression.evaluate(dimensions, particles_.size(), positions_.data(), time, values_.data());
   for (std::size_t k = 0; k < particles_.size(); ++k) out[particles_[k]] = values_[k];
 }
@@ -53,7 +54,8 @@ void PointForceLoad::begin() {
     double sum = 0;
     for (std::uint64_t i = 0; i < n_particles(); ++i) {
       double square = 0;
-      for (std::size_t a = 0; a < d; ++a) square += std::pow(reference_position.data()[i * d + a] - point[a], 2);
+      for (std::size_t a = 0; a < d; ++a)
+        square += std::pow(reference_position.data()[i * d + a] - point[a], 2);
       const double q = std::sqrt(square) / radius;
       share_[i] = q < 1.0 ? std::pow(1.0 - q, 4) * (1.0 + 4.0 * q) : 0.0;
       sum += share_[i];

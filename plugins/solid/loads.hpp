@@ -26,7 +26,8 @@ struct Gravity : ParticleOperator<Gravity> {
   Vector3 gravity{};
 
   void particle(auto i) const {
-    for (int a = 0; a < decltype(i)::dimensions; ++a) acceleration[i][a] += gravity[static_cast<std::size_t>(a)];
+    for (int a = 0; a < decltype(i)::dimensions; ++a)
+      acceleration[i][a] += gravity[static_cast<std::size_t>(a)];
   }
 };
 
@@ -86,7 +87,8 @@ struct TractionLoad : ParticleOperator<TractionLoad> {
   void particle(auto i) const {
     if (!loaded.holds(i.index)) return;
     double along = 0;
-    for (int a = 0; a < decltype(i)::dimensions; ++a) along += area[i][a] * normal_[static_cast<std::size_t>(a)];
+    for (int a = 0; a < decltype(i)::dimensions; ++a)
+      along += area[i][a] * normal_[static_cast<std::size_t>(a)];
     for (int a = 0; a < decltype(i)::dimensions; ++a)
       acceleration[i][a] += along / mass[i] * value_[static_cast<std::size_t>(a)][i.index];
   }

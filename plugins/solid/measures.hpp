@@ -36,7 +36,8 @@ struct Displacement : ParticleOperator<Displacement> {
 struct CauchyStress : ParticleOperator<CauchyStress> {
   In<Matrix> F{"current_deformation_gradient", unit("1"), doc("F at the time of the output.")};
   Out<Matrix> sigma{"cauchy_stress", unit("Pa"), doc("Cauchy stress."), derived};
-  Out<Scalar> out_of_plane{"out_of_plane_stress", unit("Pa"), doc("Cauchy stress across the plane; 0 in 3D."), derived};
+  Out<Scalar> out_of_plane{"out_of_plane_stress", unit("Pa"), doc("Cauchy stress across the plane; 0 in 3D."),
+                           derived};
   DeclaredFields law_fields{*this};
   SharedStructure structure;
 
@@ -119,8 +120,8 @@ struct StrainEnergy : ParticleOperator<StrainEnergy> {
 
 struct HourglassEnergy : ParticleOperator<HourglassEnergy> {
   In<Vector> q{"current_hourglass_stress", unit("N/m3"), doc("Hourglass control at the time of the output.")};
-  Out<Scalar> energy{"hourglass_energy", unit("J/m3"), doc("Energy of the hourglass control per reference volume."),
-                     derived};
+  Out<Scalar> energy{"hourglass_energy", unit("J/m3"),
+                     doc("Energy of the hourglass control per reference volume."), derived};
   double stiffness = 0;  // N/m4
 
   void particle(auto i) const { energy[i] = stiffness > 0.0 ? squared_norm(q[i]) / (2.0 * stiffness) : 0.0; }
@@ -130,7 +131,8 @@ struct NonAffine : ReferenceOperator {
   In<Vector> reference_position{"reference_position"};
   In<Vector> position{"position"};
   In<Matrix> F{"current_deformation_gradient", unit("1"), doc("F at the time of the output.")};
-  Out<Scalar> non_affine{"non_affine", unit("1"), doc("Non-affine part of the motion of the neighbours."), derived};
+  Out<Scalar> non_affine{"non_affine", unit("1"), doc("Non-affine part of the motion of the neighbours."),
+                         derived};
 
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {

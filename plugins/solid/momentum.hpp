@@ -15,9 +15,10 @@ namespace shoal::solid {
 
 struct InternalForce : ReferenceOperator {
   In<Matrix> P{"piola_stress", unit("Pa"), doc("First Piola-Kirchhoff stress.")};
-  In<Vector> hourglass{"hourglass_stress", unit("N/m3"), doc("Resistance to modes that alternate between particles.")};
-  Out<Vector> acceleration{"internal_acceleration", unit("m/s2"), doc("Acceleration by the body's own stress."),
-                           derived};
+  In<Vector> hourglass{"hourglass_stress", unit("N/m3"),
+                       doc("Resistance to modes that alternate between particles.")};
+  Out<Vector> acceleration{"internal_acceleration", unit("m/s2"),
+                           doc("Acceleration by the body's own stress."), derived};
 
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {

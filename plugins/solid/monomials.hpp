@@ -15,7 +15,7 @@
 namespace shoal::solid {
 
 template <int D>
-inline constexpr int n_monomials = D + D * (D + 1) / 2;
+inline constexpr int n_monomials = D + D*(D + 1) / 2;
 template <int D>
 using Monomials = Eigen::Matrix<double, n_monomials<D>, 1>;
 template <int D>

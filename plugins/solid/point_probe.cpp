@@ -47,7 +47,8 @@ void PointProbe::sample(const shoal_snapshot& snapshot, double* values) {
   for (const std::size_t i : nearest_)
     for (std::size_t a = 0; a < d; ++a) {
       values[a] += found.position[d * i + a] - at.value()[a];
-      for (std::size_t b = 0; b < d; ++b) values[a] += F[d * d * i + d * a + b] * (at.value()[b] - X[d * i + b]);
+      for (std::size_t b = 0; b < d; ++b)
+        values[a] += F[d * d * i + d * a + b] * (at.value()[b] - X[d * i + b]);
     }
   for (std::size_t a = 0; a < d; ++a) values[a] /= static_cast<double>(nearest_.size());
 }

@@ -28,14 +28,17 @@ struct Surroundings {
   };
   std::vector<Neighbour> neighbours;
 
-  void look(const WendlandC2<D>& kernel, const Row& row, const double* x, const double* volume, std::uint64_t i) {
+  void look(const WendlandC2<D>& kernel, const Row& row, const double* x, const double* volume,
+            std::uint64_t i) {
     neighbours.clear();
     for (std::uint32_t m = 0; m < row.n; ++m) {
       const std::size_t j = row.j[m];
       Vec<D> d;
-      for (int a = 0; a < D; ++a) d[a] = x[j * D + static_cast<std::size_t>(a)] - x[i * D + static_cast<std::size_t>(a)];
+      for (int a = 0; a < D; ++a)
+        d[a] = x[j * D + static_cast<std::size_t>(a)] - x[i * D + static_cast<std::size_t>(a)];
       const double r = norm(d);
-      neighbours.push_back({monomials<D>(d / kernel.h()), volume[j] * kernel.w(r), -volume[j] * kernel.dw_over_r(r)});
+      neighbours.push_back(
+          {monomials<D>(d / kernel.h()), volume[j] * kernel.w(r), -volume[j] * kernel.dw_over_r(r)});
     }
   }
 };
@@ -122,7 +125,8 @@ void ReferenceWeights::build(int dimensions, const ReferenceSettings& settings, 
     const Row row = row_of(list, i);
     if (std::any_of(row.j, row.j + row.n, [&](std::uint32_t j) { return j >= n_; }))
       throw CaseError(
-          "a solid body reaches a periodic or mirror face of the domain, which solid.total_lagrangian does not know; "
+          "a solid body reaches a periodic or mirror face of the domain, which solid.total_lagrangian does "
+          "not know; "
           "leave room, or hold the particles of a plane of symmetry with solid.prescribed_motion");
   }
   forward_.assign(offsets_[n_] * stride_);
@@ -177,7 +181,8 @@ void ReferenceWeights::residual(std::uint64_t i, std::uint32_t count, double* ou
 }
 
 std::uint64_t ReferenceWeights::bytes() const {
-  return sizeof(double) * (forward_.size() + backward_.size() + sums_.size()) + sizeof(std::uint64_t) * offsets_.size();
+  return sizeof(double) * (forward_.size() + backward_.size() + sums_.size()) +
+         sizeof(std::uint64_t) * offsets_.size();
 }
 
 // Small displacements u of an isotropic body: w^2 is the largest eigenvalue of u -> -f(u) / rho.

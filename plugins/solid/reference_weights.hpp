@@ -97,7 +97,8 @@ class ReferenceWeights {
 
  private:
   template <int D>
-  void fill(const ReferenceSettings& settings, const shoal_neighbours& list, const ReferenceGeometry& geometry);
+  void fill(const ReferenceSettings& settings, const shoal_neighbours& list,
+            const ReferenceGeometry& geometry);
   template <int D>
   void mirror(const shoal_neighbours& list, const double* volume);
   template <int D>

@@ -14,8 +14,8 @@ namespace shoal::solid {
 
 class Region {
  public:
-  Expression where;              // without it: everything
-  std::shared_ptr<void> shape;   // made by `api`
+  Expression where;             // without it: everything
+  std::shared_ptr<void> shape;  // made by `api`
   const shoal_shape_api* api = nullptr;
 
   // Finds out whether each particle belongs to it.

@@ -17,7 +17,8 @@ inline constexpr At at_kick{"structure", "kick"};
 inline constexpr At at_constraints{"structure", "constraints"};
 
 inline void declare_loop(const Builder& builder) {
-  builder.loop("structure", {"drift", "half_motion", "deformation", "stress", "forces", "kick", "constraints"});
+  builder.loop("structure",
+               {"drift", "half_motion", "deformation", "stress", "forces", "kick", "constraints"});
 }
 
 }  // namespace shoal::solid

@@ -13,7 +13,8 @@
 namespace shoal::solid {
 
 // What the law is told of particles that stand one after the other; the caller fills in what it wants to know.
-inline shoal_stress_block stress_block(const Structure& structure, std::uint64_t n, const double* F, double* const* fields) {
+inline shoal_stress_block stress_block(const Structure& structure, std::uint64_t n, const double* F,
+                                       double* const* fields) {
   shoal_stress_block block{};
   block.size = sizeof block;
   block.kinematics = structure.kinematics;
@@ -55,11 +56,12 @@ struct InitialState : ParticleOperator<InitialState> {
   void block(std::uint64_t begin, std::uint64_t end) const {
     std::array<double*, DeclaredFields::most> fields;
     law_fields.at(begin, fields.data());
-    for (std::uint64_t i = begin; i < end; ++i) mass.data()[i] = structure->constants.density * volume.data()[i];
+    for (std::uint64_t i = begin; i < end; ++i)
+      mass.data()[i] = structure->constants.density * volume.data()[i];
     if (structure->law.api->initialise != nullptr)
-      check_host(structure->law.api->initialise(structure->law.self, structure->kinematics, end - begin,
-                                                position.data() + begin * static_cast<std::uint64_t>(dimensions()),
-                                                fields.data()));
+      check_host(structure->law.api->initialise(
+          structure->law.self, structure->kinematics, end - begin,
+          position.data() + begin * static_cast<std::uint64_t>(dimensions()), fields.data()));
   }
 };
 

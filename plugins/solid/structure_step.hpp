@@ -63,7 +63,8 @@ struct StableStep : WeightBuilder {
       const ForceConsistency& made = structure->weights.consistency();
       char text[160];
       std::snprintf(text, sizeof text,
-                    "solid: force of a uniform stress inside %.2g, made %.2g in %d iterations; largest frequency %.4g rad/s",
+                    "solid: force of a uniform stress inside %.2g, made %.2g in %d iterations; largest "
+                    "frequency %.4g rad/s",
                     made.before, made.after, made.iterations, 2.0 / limit_);
       log_debug(text);
     }

@@ -26,15 +26,17 @@ SharedStructure structure_of(const TotalLagrangian& physics, const Builder& b, B
   auto structure = std::make_shared<Structure>();
   structure->law = b.material_interface<shoal_stress_law>(body, SHOAL_STRESS_LAW, SHOAL_STRESS_LAW_REVISION);
   if (!structure->law)
-    throw CaseError(std::string("body '") + b.body(body).name +
-                    "' needs a material with a stress law, e.g. material: {solid.neo_hookean: {density: 1000, "
-                    "young: 1e6, poisson: 0.3}}");
+    throw CaseError(
+        std::string("body '") + b.body(body).name +
+        "' needs a material with a stress law, e.g. material: {solid.neo_hookean: {density: 1000, "
+        "youngs_modulus: 1e6, poisson_ratio: 0.3}}");
   if (b.dimensions() == 2)
     structure->kinematics = physics.plane.value() == "stress" ? SHOAL_PLANE_STRESS : SHOAL_PLANE_STRAIN;
   structure->constants.size = sizeof structure->constants;
   structure->law.api->constants(structure->law.self, structure->kinematics, &structure->constants);
   const double dx = b.body(body).spacing;
-  structure->settings = {physics.gradient.value() == "quadratic", 0.5 * physics.support * dx, dx, physics.regularisation, physics.consistent};
+  structure->settings = {physics.gradient.value() == "quadratic", 0.5 * physics.support * dx, dx,
+                         physics.regularisation, physics.consistent};
   structure->hourglass = physics.hourglass * structure->constants.shear_modulus;
   return structure;
 }
@@ -60,8 +62,8 @@ struct SolidBody {
     b.attach<InitialState>("solid.initial_state", {SHOAL_INITIAL, "state"}, itself(),
                            [&](auto& op) { declare_law_fields(op, true); });
     b.attach<SurfaceArea>(
-        "solid.surface_area", {SHOAL_INITIAL, "state"}, reference(), [&](auto& op) { op.structure = structure; },
-        SHOAL_OPERATOR_ON_DEMAND);
+        "solid.surface_area", {SHOAL_INITIAL, "state"}, reference(),
+        [&](auto& op) { op.structure = structure; }, SHOAL_OPERATOR_ON_DEMAND);
   }
   // What outputs and probes ask for: each runs only if somebody does.
   template <class Op, class Setup>
@@ -95,11 +97,13 @@ struct SolidBody {
   void attach_measures() const {
     attach_current_state();
     on_demand<Displacement>("solid.displacement");
-    on_demand<CauchyStress>("solid.cauchy_stress", itself(), [&](auto& op) { declare_law_fields(op, false); });
+    on_demand<CauchyStress>("solid.cauchy_stress", itself(),
+                            [&](auto& op) { declare_law_fields(op, false); });
     on_demand<VonMises>("solid.von_mises");
     on_demand<PrincipalStress>("solid.principal_stress");
     on_demand<MeanPressure>("solid.pressure");
-    on_demand<StrainEnergy>("solid.strain_energy", itself(), [&](auto& op) { declare_law_fields(op, false); });
+    on_demand<StrainEnergy>("solid.strain_energy", itself(),
+                            [&](auto& op) { declare_law_fields(op, false); });
     const double dx = structure->settings.spacing;
     on_demand<HourglassEnergy>("solid.hourglass_energy", itself(),
                                [&](auto& op) { op.stiffness = structure->hourglass / (dx * dx); });
@@ -117,7 +121,8 @@ struct SolidBody {
     if (g != Vector3{})
       b.attach<Gravity>("solid.gravity", at_forces, itself(), [&](auto& op) { op.gravity = g; });
     if (physics.damping > 0.0)
-      b.attach<MassDamping>("solid.mass_damping", at_forces, itself(), [&](auto& op) { op.coefficient = physics.damping; });
+      b.attach<MassDamping>("solid.mass_damping", at_forces, itself(),
+                            [&](auto& op) { op.coefficient = physics.damping; });
     b.attach<Kick>("solid.kick", at_kick, itself());
     b.attach<StableStep>("solid.stable_step", at_kick, reference(), [&](auto& op) {
       op.structure = structure;
@@ -134,8 +139,9 @@ void TotalLagrangian::build(const Builder& b) {
     const SolidBody solid{b, *this, body};
     b.body_moves(body);
     const shoal_elastic_constants& constants = solid.structure->constants;
-    b.note(std::string(b.body(body).name) + ": speed of longitudinal waves " + number(constants.longitudinal_speed) +
-           " m/s, of shear waves " + number(constants.shear_speed) + " m/s");
+    b.note(std::string(b.body(body).name) + ": speed of longitudinal waves " +
+           number(constants.longitudinal_speed) + " m/s, of shear waves " + number(constants.shear_speed) +
+           " m/s");
     solid.attach_initial();
     solid.attach_step();
     solid.attach_measures();

@@ -38,13 +38,16 @@ SharedStructure structure() {
   return made;
 }
 
-testing::Setup setup() { return {.smoothing_length = solid_test::settings().smoothing_length, .spacing = dx}; }
+testing::Setup setup() {
+  return {.smoothing_length = solid_test::settings().smoothing_length, .spacing = dx};
+}
 
 // Moves the particles by a smooth field and noise.
 template <int D>
 void deform(testing::Body& body) {
   body.set_each("position", D, [&](std::size_t i, std::size_t a) {
-    const double X = body["reference_position"][i * D + a], Y = body["reference_position"][i * D + (a + 1) % D];
+    const double X = body["reference_position"][i * D + a],
+                 Y = body["reference_position"][i * D + (a + 1) % D];
     return 1.1 * X + 0.2 * Y * Y + 0.02 * dx * std::sin(37.0 * static_cast<double>(i * D + a));
   });
 }

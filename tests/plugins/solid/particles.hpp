@@ -34,7 +34,8 @@ inline shoal::testing::Body box(int dimensions, int n, double disorder) {
           if (gap < nearest) nearest = gap, axis = k;
         }
         const double* own = x.data() + x.size() - static_cast<std::size_t>(dimensions);
-        for (int k = 0; k < dimensions; ++k) normal.push_back(k != axis ? 0.0 : own[k] < 0.5 * n * dx ? -1.0 : 1.0);
+        for (int k = 0; k < dimensions; ++k)
+          normal.push_back(k != axis ? 0.0 : own[k] < 0.5 * n * dx ? -1.0 : 1.0);
         distance.push_back(-nearest);
       }
   shoal::testing::Body body(dimensions, x);

@@ -47,8 +47,8 @@ std::vector<long double> solve(std::vector<std::vector<long double>> m, std::vec
 // Coefficients of the least-squares fit of values f around particle i: 1 (if it is free there), X, Y, ..., by the text
 // book. Lengths are in smoothing lengths.
 template <int D>
-std::vector<long double> fit(testing::Body& body, const std::vector<double>& f, std::size_t i, bool free_value,
-                             double eps) {
+std::vector<long double> fit(testing::Body& body, const std::vector<double>& f, std::size_t i,
+                             bool free_value, double eps) {
   const double h = solid_test::settings().smoothing_length;
   const WendlandC2<D> kernel(h);
   const auto& x = body["reference_position"];
@@ -115,7 +115,8 @@ void compare_with_fit(double disorder) {
 
 // Largest difference of F from the gradient of a polynomial motion, and the largest residual over the spacing.
 template <int D, class Motion, class Gradient>
-std::array<double, 2> errors(const ReferenceSettings& settings, double disorder, Motion&& motion, Gradient&& exact) {
+std::array<double, 2> errors(const ReferenceSettings& settings, double disorder, Motion&& motion,
+                             Gradient&& exact) {
   testing::Body body = solid_test::box(D, 8, disorder);
   const solid_test::Neighbours neighbours(body);
   const ReferenceWeights weights = weights_of(body, neighbours, settings);
@@ -132,7 +133,8 @@ std::array<double, 2> errors(const ReferenceSettings& settings, double disorder,
   }
   double gradient_error = 0, residual_error = 0;
   for (std::size_t i = 0; i < body.size(); ++i) {
-    const auto [gradient, residual] = deformation<D>(row_of(neighbours.list, i), weights.forward(i), x.data(), i);
+    const auto [gradient, residual] =
+        deformation<D>(row_of(neighbours.list, i), weights.forward(i), x.data(), i);
     const Mat<D> difference = gradient - exact(at(i));
     gradient_error = std::max(gradient_error, std::sqrt(double_dot(difference, difference)));
     residual_error = std::max(residual_error, norm(residual) / dx);
@@ -160,8 +162,8 @@ TEST_CASE("linear motions are exact on any arrangement") {
     const Mat<D> A = some_matrix<D>();
     ReferenceSettings settings = solid_test::settings();
     settings.quadratic = quadratic;
-    const auto [gradient, residual] =
-        errors<D>(settings, disorder, [&](const Vec<D>& X) { return A * X; }, [&](const Vec<D>&) { return A; });
+    const auto [gradient, residual] = errors<D>(
+        settings, disorder, [&](const Vec<D>& X) { return A * X; }, [&](const Vec<D>&) { return A; });
     CHECK(gradient < 1e-11);
     CHECK(residual < 1e-11);
   };
@@ -218,7 +220,9 @@ TEST_CASE("a uniform stress exerts no force inside, and the area vectors close t
           sum[a] += r[a] * dx;
           first_moment[a] -= volume * r[a] * body["reference_position"][i * D + static_cast<std::size_t>(a)];
         }
-        if (body["signed_distance"][i] > -2.0 * settings.smoothing_length) continue;
+        // On a lattice forces vanish where all neighbours have all of theirs; further out it takes the change.
+        const double layers = disorder == 0.0 ? 4.0 : 2.0;
+        if (body["signed_distance"][i] > -layers * settings.smoothing_length) continue;
         ++n;
         for (int a = 0; a < D; ++a) square += r[a] * dx * r[a] * dx;
       }
@@ -234,11 +238,11 @@ TEST_CASE("a uniform stress exerts no force inside, and the area vectors close t
     if (disorder == 0.0)
       CHECK(rms[0] < 1e-12);
     else
-      CHECK(rms[1] < 0.1 * rms[0]);
+      CHECK(rms[1] < 0.05 * rms[0]);
   };
-  check.operator()<2>(0.0, 1e-12);
-  check.operator()<2>(0.2, 0.05);
-  check.operator()<3>(0.2, 0.05);
+  check.operator()<2>(0.0, 2e-3);
+  check.operator()<2>(0.2, 0.02);
+  check.operator()<3>(0.2, 0.02);
 }
 
 TEST_CASE("the largest frequency is that of the explicit step's limit") {
@@ -255,7 +259,8 @@ TEST_CASE("the largest frequency is that of the explicit step's limit") {
     double largest = 0;
     for (int step = 0; step < 2000; ++step) {
       for (std::size_t i = 0; i < n; ++i) {
-        const auto [gradient, residual] = deformation<2>(row_of(neighbours.list, i), weights.forward(i), u.data(), i);
+        const auto [gradient, residual] =
+            deformation<2>(row_of(neighbours.list, i), weights.forward(i), u.data(), i);
         const Mat<2> strain = symmetric_part(gradient);
         const Mat<2> s = stiffness.lambda * trace(strain) * identity<2>() + 2.0 * stiffness.mu * strain;
         std::copy_n(s.e, 4, P.data() + 4 * i);
@@ -263,8 +268,8 @@ TEST_CASE("the largest frequency is that of the explicit step's limit") {
           q[2 * i + static_cast<std::size_t>(a)] = stiffness.hourglass / (dx * dx) * residual[a];
       }
       for (std::size_t i = 0; i < n; ++i) {
-        const Vec<2> f = force<2, true>(row_of(neighbours.list, i), weights.backward(i), weights.sums(i), P.data(),
-                                        q.data(), i);
+        const Vec<2> f = force<2, true>(row_of(neighbours.list, i), weights.backward(i), weights.sums(i),
+                                        P.data(), q.data(), i);
         for (int a = 0; a < 2; ++a) v[2 * i + static_cast<std::size_t>(a)] += dt / stiffness.density * f[a];
       }
       largest = 0;
