@@ -30,7 +30,7 @@ class JohnsonCook final : public J2Plasticity {
       optional,
       example("1063")};
   Param<double> heat_capacity{"heat_capacity", "J/kg/K", "Specific heat, which the softening needs.",
-                              positive,        optional,   example("383")};
+                              positive,        optional, example("383")};
   Param<double> work_to_heat{"work_to_heat", "1", "Part of the plastic work that becomes heat.",
                              between(0.0, 1.0), default_to(0.9)};
 
