@@ -28,9 +28,7 @@ inline constexpr const char *total_doc = "Acceleration by all forces in the last
                             *dv_doc = "Gradient of the velocity at the midpoint, dv_a/dx_b.",
                             *dp_doc = "Gradient of the pressure at the midpoint.",
                             *v_mid_doc = "Velocity at the midpoint of the advection step.",
-                            *p_mid_doc = "Pressure at the midpoint of the advection step.",
-                            *stage_doc = "Velocity in the stages of the viscous step.",
-                            *bias_doc = "Coefficient of the bi-Laplacian in the error of the Laplacian.";
+                            *p_mid_doc = "Pressure at the midpoint of the advection step.";
 
 // The advection step: dt <= cfl h / max(|v|, 0.1 U), dt <= d h^2 / nu. The viscous limit is one of accuracy: the
 // viscous step is stable beyond it.
@@ -91,7 +89,6 @@ struct Carry : PairOperator<Carry> {
   using Kernel = Weight<D>;
 
   In<FitGradient> gradient{"fit_gradient", unit("1"), doc(gradient_doc), derived, own_only};
-  In<FitLaplacian> laplacian{"fit_laplacian", unit("1"), doc(laplacian_doc), derived, own_only};
   In<Vector> velocity_mid{"velocity_mid", unit("m/s"), doc(v_mid_doc), derived};
   In<Scalar> pressure_mid{"pressure_mid", unit("Pa"), doc(p_mid_doc), derived};
   In<Vector> shift{"shift", unit("m"), doc(shift_doc), own_only};
@@ -99,22 +96,16 @@ struct Carry : PairOperator<Carry> {
   InOut<Scalar> pressure{"pressure"};
   Out<Matrix> velocity_gradient{"velocity_gradient", unit("1/s"), doc(dv_doc)};
   Out<Vector> pressure_gradient{"pressure_gradient", unit("Pa/m"), doc(dp_doc)};
-  Out<Vector> stage_velocity{"viscous_velocity", unit("m/s"), doc(stage_doc), derived};
-  Out<Scalar> bias{"laplacian_bias", unit("m2"), doc(bias_doc), derived};
 
   auto pair(const auto& p) const {
     const auto g = fit_gradient(p, p.i(gradient));
-    const auto r2 = squared_norm(p.r_ij());
-    return sums(outer(p.j(velocity_mid) - p.i(velocity_mid), g), (p.j(pressure_mid) - p.i(pressure_mid)) * g,
-                fit_laplacian(p, p.i(laplacian)) * r2 * r2);
+    return sums(outer(p.j(velocity_mid) - p.i(velocity_mid), g), (p.j(pressure_mid) - p.i(pressure_mid)) * g);
   }
-  void particle(auto i, auto dv, auto dp, double fourth_moment) const {
+  void particle(auto i, auto dv, auto dp) const {
     velocity[i] += dv * shift[i];
     pressure[i] += dot(dp, shift[i]);
     velocity_gradient[i] = dv;
     pressure_gradient[i] = dp;
-    stage_velocity[i] = velocity[i];
-    bias[i] = fourth_moment / (i.dimensions == 2 ? 64.0 : 120.0);
   }
 };
 

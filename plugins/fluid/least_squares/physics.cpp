@@ -73,6 +73,7 @@ struct FluidBody {
       b.attach<InviscidForce>("fluid.inviscid_force", at_source, target());
       return;
     }
+    b.attach<ViscousStart>("fluid.viscous_start", at_forces, target());
     b.attach<ViscousRate>("fluid.viscous_rate", at_stage, target(), [&](auto& op) {
       op.viscosity = viscosity;
       op.density = density;

@@ -26,7 +26,15 @@ namespace shoal::fluid::least_squares {
 
 inline constexpr const char *rate_doc = "Rate of change of the velocity in a viscous stage.",
                             *force_doc = "Acceleration by all but pressure.",
+                            *stage_doc = "Velocity in the stages of the viscous step.",
                             *viscous_doc = "Mean viscous acceleration of the advection step.";
+
+struct ViscousStart : ParticleOperator<ViscousStart> {
+  In<Vector> velocity{"velocity"};
+  Out<Vector> stage_velocity{"viscous_velocity", unit("m/s"), doc(stage_doc), derived};
+
+  void particle(auto i) const { stage_velocity[i] = velocity[i]; }
+};
 
 // nu lap w + F
 struct ViscousRate : PairOperator<ViscousRate> {
@@ -105,14 +113,18 @@ struct ViscousForce : PairOperator<ViscousForce> {
   using Kernel = Weight<D>;
 
   In<FitLaplacian> laplacian{"fit_laplacian", unit("1"), doc(laplacian_doc), derived, own_only};
-  In<Scalar> bias{"laplacian_bias", unit("m2"), doc(bias_doc), derived, own_only};
   In<Vector> viscous{"viscous_acceleration", unit("m/s2"), doc(viscous_doc), derived};
   In<Vector> acceleration{"acceleration", own_only};
   Out<Vector> force{"specific_force", unit("m/s2"), doc(force_doc), derived};
 
-  auto pair(const auto& p) const { return fit_laplacian(p, p.i(laplacian)) * (p.j(viscous) - p.i(viscous)); }
-  void particle(auto i, auto laplacian_of_viscous) const {
-    force[i] = acceleration[i] + viscous[i] - bias[i] * laplacian_of_viscous;
+  auto pair(const auto& p) const {
+    const auto weight = fit_laplacian(p, p.i(laplacian));
+    const auto r2 = squared_norm(p.r_ij());
+    return sums(weight * (p.j(viscous) - p.i(viscous)), weight * r2 * r2);
+  }
+  void particle(auto i, auto laplacian_of_viscous, double fourth_moment) const {
+    const double bias = fourth_moment / (i.dimensions == 2 ? 64.0 : 120.0);
+    force[i] = acceleration[i] + viscous[i] - bias * laplacian_of_viscous;
   }
 };
 

@@ -63,6 +63,19 @@ double laplacian(Body& body, std::size_t i, const std::vector<double>& f, std::s
   return derivatives(body, i, f, components, component).second.trace();
 }
 
+// sum_j l_ij r^4 / 64 in 2D, / 120 in 3D: the Laplacian at i of the field r^4 around i.
+double bias(Body& body, std::size_t i) {
+  const auto d = static_cast<std::size_t>(body.dimensions());
+  std::vector<double> r4(body.size());
+  for (std::size_t j = 0; j < body.size(); ++j) {
+    double squared = 0;
+    for (std::size_t a = 0; a < d; ++a)
+      squared += std::pow(body["position"][j * d + a] - body["position"][i * d + a], 2);
+    r4[j] = squared * squared;
+  }
+  return laplacian(body, i, r4) / (d == 2 ? 64.0 : 120.0);
+}
+
 // Disordered particles with fields that are no polynomials; surfaces on all sides, so fits are one-sided there.
 Body disordered(int dimensions) {
   const std::vector<double> upper(static_cast<std::size_t>(dimensions), dimensions == 2 ? 1.0 : 0.6);
@@ -136,7 +149,6 @@ TEST_CASE("fields are carried along the shift with the gradients of the fit") {
           moved += slope * body["shift"][i * d + b];
         }
         CHECK(body["velocity"][i * d + a] == doctest::Approx(moved).epsilon(rounding));
-        CHECK(body["viscous_velocity"][i * d + a] == body["velocity"][i * d + a]);
       }
     }
   });
@@ -146,10 +158,6 @@ TEST_CASE("the rate of a viscous stage, and the force without the Laplacian's le
   in_all_ways([](int dimensions, Setup setup) {
     Body body = disordered(dimensions);
     solve(body);
-    Carry carry;
-    Body carried = body;
-    testing::run(carry, carried, {&carried}, setup);
-    body["laplacian_bias"] = carried["laplacian_bias"];
     ViscousRate rate;
     rate.viscosity = 0.3;
     rate.density = rho0;
@@ -164,9 +172,8 @@ TEST_CASE("the rate of a viscous stage, and the force without the Laplacian's le
         const double expected = 0.3 * laplacian(body, i, body["viscous_velocity"], d, a) +
                                 body["acceleration"][k] - body["pressure_gradient"][k] / rho0;
         CHECK(body["viscous_rate"][k] == doctest::Approx(expected).epsilon(rounding).scale(100));
-        const double corrected =
-            body["acceleration"][k] + body["viscous_acceleration"][k] -
-            body["laplacian_bias"][i] * laplacian(body, i, body["viscous_acceleration"], d, a);
+        const double corrected = body["acceleration"][k] + body["viscous_acceleration"][k] -
+                                 bias(body, i) * laplacian(body, i, body["viscous_acceleration"], d, a);
         CHECK(forced["specific_force"][k] == doctest::Approx(corrected).epsilon(rounding).scale(100));
       }
   });
@@ -189,19 +196,21 @@ TEST_CASE("with its leading error taken off, the Laplacian is of fourth order on
       };
       body.set_each("viscous_acceleration", d, [&](std::size_t i, std::size_t) { return wave(i); });
       solve(body);
-      Carry carry;
-      testing::run(carry, body, {&body}, {.smoothing_length = h, .spacing = dx, .dt = 1});
       const double exact = -k * k * wave(middle);
       const double once = laplacian(body, middle, body["viscous_acceleration"], d, 0);
-      std::vector<double> first(body.size(), 0.0);
+      // The operator takes the viscous acceleration for what it corrects: here the Laplacian of the wave.
+      std::vector<double> first(body.size() * d, 0.0);
       for (std::size_t i = 0; i < body.size(); ++i) {
         double squared = 0;
         for (std::size_t a = 0; a < d; ++a)
           squared += std::pow(body["position"][i * d + a] - body["position"][middle * d + a], 2);
-        if (squared < 4.0 * h * h) first[i] = laplacian(body, i, body["viscous_acceleration"], d, 0);
+        if (squared < 4.0 * h * h) first[i * d] = laplacian(body, i, body["viscous_acceleration"], d, 0);
       }
+      body["viscous_acceleration"] = first;
+      ViscousForce op;
+      testing::run(op, body, {&body}, {.smoothing_length = h, .spacing = dx});
       plain += (once - exact) / exact;
-      corrected += (once - body["laplacian_bias"][middle] * laplacian(body, middle, first) - exact) / exact;
+      corrected += (body["specific_force"][middle * d] - exact) / exact;
     }
     CHECK(std::abs(plain) > 0.01);
     CHECK(std::abs(corrected) < 0.12 * std::abs(plain));

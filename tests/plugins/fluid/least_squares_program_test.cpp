@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The program with fluid.least_squares on the Taylor-Green vortex: order of convergence, Re 10 000, the same bits on any
+// number of threads and after a restart, and what a plan holds.
+#include <cmath>
+#include <set>
+
+#include "kernel/particles/parallel.hpp"
+#include "tests/app/support.hpp"
+
+using namespace app_test;
+
+namespace {
+
+std::string vortex(int n, double reynolds, const std::string& end, const std::string& more = "") {
+  return "shoal: 1\n"
+         "plugins: [fluid]\n"
+         "dimensions: 2\n"
+         "parameters: {Re: " +
+         std::to_string(reynolds) + ", dx: 1/" + std::to_string(n) +
+         ", b: 8*pi^2/Re}\n"
+         "resolution: $dx\n"
+         "domain: {lower: [0, 0], upper: [1, 1], periodic: [x, y]}\n"
+         "bodies:\n"
+         "  water:\n"
+         "    shape: {box: {lower: [0, 0], upper: [1, 1]}}\n"
+         "    arrangement: relaxed\n"
+         "    material: {fluid.liquid: {density: 1, viscosity: 1/Re}}\n"
+         "    initial:\n"
+         "      velocity: [\"-cos(2*pi*x)*sin(2*pi*y)\", \"sin(2*pi*x)*cos(2*pi*y)\"]\n"
+         "      pressure: \"-(cos(4*pi*x) + cos(4*pi*y))/4\"\n"
+         "physics:\n"
+         "  - fluid.least_squares: {bodies: [water], max_speed: 1, mach: 2*dx" +
+         more +
+         "}\n"
+         "run: {end: " +
+         end +
+         "}\n"
+         "probes:\n"
+         "  error:\n"
+         "    mean:\n"
+         "      of: \"2*((velocity.x*exp(b*t) + cos(2*pi*x)*sin(2*pi*y))^2"
+         " + (velocity.y*exp(b*t) - sin(2*pi*x)*cos(2*pi*y))^2)\"\n"
+         "      body: water\n"
+         "    every: 50 ms\n"
+         "  energy: {mean: {of: 2*velocity.magnitude^2*exp(2*b*t), body: water}, every: 50 ms}\n";
+}
+
+// L2 error of velocity at the end.
+double final_error(int n) {
+  write("vortex.yaml", vortex(n, 100.0, "0.5"));
+  REQUIRE(app_test::shoal({"run", "vortex.yaml", "-o", "order", "--force"}).code == 0);
+  return std::sqrt(rows("order/probes/error.csv").back()[1]);
+}
+
+std::string plan(const std::string& text) {
+  write("vortex.yaml", text);
+  const Result result = app_test::shoal({"plan", "vortex.yaml"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  return result.out;
+}
+
+}  // namespace
+
+TEST_CASE("the error of the Taylor-Green vortex falls with at least the square of the resolution") {
+  const double coarse = final_error(20), fine = final_error(40);
+  CAPTURE(coarse);
+  CAPTURE(fine);
+  CHECK(fine < 0.005);
+  CHECK(std::log2(coarse / fine) > 2.0);
+}
+
+TEST_CASE("at Re 10 000 the vortices keep their energy") {
+  write("vortex.yaml", vortex(40, 1e4, "3"));
+  REQUIRE(app_test::shoal({"run", "vortex.yaml", "-o", "fast", "--force"}).code == 0);
+  for (const auto& row : rows("fast/probes/energy.csv")) CHECK(row[1] == doctest::Approx(1.0).epsilon(0.03));
+}
+
+TEST_CASE("the same bits on one thread and two, and after a restart") {
+  constexpr int n = 80;
+  static_assert(n * n > shoal::kernel::serial_below, "else no thread but one is ever used");
+  write("vortex.yaml", vortex(n, 100.0, "0.1"));
+  const auto run = [](const std::string& folder, const std::string& threads, const std::string& until) {
+    REQUIRE(app_test::shoal(
+                {"run", "vortex.yaml", "-o", folder, "--force", "--threads", threads, "--until", until})
+                .code == 0);
+  };
+  run("one", "1", "0.1");
+  run("two", "2", "0.1");
+  run("parts", "2", "0.04");
+  REQUIRE(app_test::shoal({"resume", "parts", "--threads", "1"}).code == 0);
+  for (const char* probe : {"error", "energy"}) {
+    const std::string path = std::string("/probes/") + probe + ".csv";
+    CHECK(rows("one" + path).size() > 2);
+    CHECK(read("one" + path) == read("two" + path));
+    CHECK(read("one" + path) == read("parts" + path));
+  }
+}
+
+TEST_CASE("viscosity is in the plan of a viscous fluid only") {
+  const std::string viscous = plan(vortex(20, 100.0, "1"));
+  CHECK(contains(viscous, "loop viscous"));
+  CHECK(contains(viscous, "fluid.viscous_rate"));
+  std::string text = vortex(20, 100.0, "1");
+  text.replace(text.find("viscosity: 1/Re"), 15, "viscosity: 0   ");
+  const std::string inviscid = plan(text);
+  CHECK_FALSE(contains(inviscid, "viscous_"));
+  CHECK(contains(inviscid, "fluid.inviscid_force"));
+}
+
+TEST_CASE("a body without a liquid is named") {
+  std::string text = vortex(20, 100.0, "1");
+  const std::size_t at = text.find("    material"), end = text.find('\n', at);
+  text.replace(at, end - at, "    material: fluid.wall");
+  write("vortex.yaml", text);
+  const Result result = app_test::shoal({"check", "vortex.yaml"});
+  CHECK(result.code == 2);
+  CHECK(
+      contains(result.err,
+               "body 'water' needs a material with a density and a viscosity, e.g. material: {fluid.liquid: "
+               "{density: 1000, viscosity: 1e-3}}"));
+}
