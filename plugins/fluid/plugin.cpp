@@ -20,9 +20,10 @@ SHOAL_PLUGIN(fluid, "0.1.0") {
              "sloshing, "
              "impacts, and internal flows at moderate Mach number.",
              "Zhang, Rezavand, Hu 2020");
-  add<LeastSquares>("fluid.least_squares",
-                    "Incompressible flow without a free surface, second-order accurate: derivatives by a quadratic "
-                    "least-squares fit, pressure by a wave equation. Take it for vortices, mixing and decay, where "
-                    "fluid.wcsph wants ten times the particles for the same error.",
-                    "Negi, Ramachandran 2022, doi:10.1016/j.cma.2022.114738");
+  add<LeastSquares>(
+      "fluid.least_squares",
+      "Incompressible flow without a free surface, second-order accurate: derivatives by a quadratic "
+      "least-squares fit, pressure by a wave equation. Take it for vortices, mixing and decay, where "
+      "fluid.wcsph wants ten times the particles for the same error.",
+      "Negi, Ramachandran 2022, doi:10.1016/j.cma.2022.114738");
 }
