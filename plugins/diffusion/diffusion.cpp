@@ -173,6 +173,9 @@ class OneField {
       b_.attach<Weights>("diffusion.weights", at, target_of(k), [&](auto& op) {
         op.set(field_, isotropic_, stencil);
         op.capacity = bodies_[k].medium->capacity();
+        op.capacities.push_back(op.capacity);
+        for (std::size_t other = 0; other < bodies_.size(); ++other)
+          if (other != k) op.capacities.push_back(bodies_[other].medium->capacity());
         op.moving = physics_.inside.is_set();
         if (has_surface()) op.set_surface(field_, conditions_);
       });

@@ -9,6 +9,7 @@
 //   each weighted with W(r). Then, with the second derivatives d2 that follow from a and K_ij = (K_i + K_j) / 2,
 //   C dc_i/dt = sum_j K_ij : d2_ij (c_j - c_i) + sum_b K_ib : d2_ib (g_b - A_b c_i),
 // which is div(K grad c), as d_a (K d_b c) = (d_a d_b (K c) - c d_a d_b K + K d_a d_b c) / 2.
+// Neighbours in another body are seen across the interface (cross_interface).
 // Second order inside, at surfaces of any shape, and on disordered particles; a surface of which nothing is said is
 // insulated by A = 0, B = 1, g = 0. Contents are kept to second order, not to rounding. K has to be smooth.
 // Where neighbours are too few for the fit, the row is that of the conservative scheme.
@@ -16,6 +17,7 @@
 // eigenvalues have a negative real part.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -96,13 +98,16 @@ struct FitWeights : WeightsOfPairs {
     double size;
     int relation;  // -1: the particle itself
     std::uint32_t j;
-    std::uint64_t entry;  // in the list, of a neighbour
-    int condition;        // number of the condition at a surface point; 0: a neighbour
+    std::uint64_t entry;   // in the list, of a neighbour
+    int condition;         // number of the condition at a surface point; 0: a neighbour
+    bool foreign = false;  // a neighbour across an interface, seen by the polynomial of this side
   };
 
   template <int D, class Kernel>
   void gather_rows(const Kernel& kernel, std::uint64_t i, std::vector<Row<D>>& rows) const {
     rows.clear();
+    std::vector<InterfacePoint<D>> interface;
+    gather_interface<D>(i, interface);
     const Vec<D> x_i = position[Particle<D>{i, nullptr}];
     const double per_h = 1.0 / smoothing_length();
     if (points) add_surface_point<D>(kernel, x_i, -1, static_cast<std::uint32_t>(i), rows);
@@ -114,9 +119,68 @@ struct FitWeights : WeightsOfPairs {
         const double w = kernel.w(norm(x));
         if (w > 0.0)
           rows.push_back({Quadratic<D>::monomials(per_h * x), w, 1.0, static_cast<int>(k), j, entry, 0});
+        if (w > 0.0 && points && k > 0) cross_interface<D>(i, x, interface, rows.back());
         if (points && k == 0) add_surface_point<D>(kernel, x_i, 0, j, rows);
       }
     }
+  }
+
+  // A point of an interface to another body, from particle i, and the normal out of i's body.
+  template <int D>
+  struct InterfacePoint {
+    Vec<D> place, normal;
+  };
+
+  template <int D>
+  void gather_interface(std::uint64_t i, std::vector<InterfacePoint<D>>& interface) const {
+    interface.clear();
+    if (!points || n_relations() < 2) return;
+    const Vec<D> x_i = position[Particle<D>{i, nullptr}];
+    const auto add = [&](int relation, std::uint32_t j) {
+      const auto point = points->template at<D>(*this, relation, j);
+      if (point.number != SurfacePoints::interface) return;
+      interface.push_back({point.place - x_i, (relation > 0 ? -1.0 : 1.0) * point.normal});
+    };
+    add(-1, static_cast<std::uint32_t>(i));
+    for (std::size_t k = 0; k < n_relations(); ++k)
+      for (std::uint32_t m = 0; m < neighbours(k).counts[i]; ++m)
+        add(static_cast<int>(k), neighbours(k).indices[neighbours(k).offsets[i] + m]);
+  }
+
+  // Neighbour j at x from particle i is in another body. With n across the interface, from here to there, the point x' at
+  // the interface on the way to j and s its distance to j, c_j follows from the polynomial on this side:
+  //   c_j = c(x') + s (k / k_j) dc/dn + s^2 / 2 (c_nn of there),   c_nn = (a / a_j - 1) lap c + c_nn of here
+  // since c, K n . grad c and dc/dt are continuous; k = n . K n, a = k / capacity.
+  template <int D>
+  void cross_interface(std::uint64_t i, const Vec<D>& x, const std::vector<InterfacePoint<D>>& interface,
+                       Row<D>& row) const {
+    const auto k = static_cast<std::size_t>(row.relation);
+    const auto distance = [&](const InterfacePoint<D>& b) { return squared_norm(b.place - 0.5 * x); };
+    const auto nearest =
+        std::min_element(interface.begin(), interface.end(),
+                         [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+    if (nearest == interface.end()) return;
+    const Vec<D> n = nearest->normal;
+    const double s = std::clamp(dot(n, x - nearest->place), 0.0, norm(x));
+    const double k_i = dot(n, own_tensor<D>(i) * n), k_j = dot(n, tensor_of<D>(k, row.j) * n);
+    const double ratio = k_i / k_j;
+    // Where the other side is much slower, its curvature does not follow from this one: it is taken as steady.
+    double diffusivities = ratio * capacities[k] / capacity;
+    if (diffusivities > 4.0) diffusivities = 0.0;
+    const double per_h = 1.0 / smoothing_length();
+    const Vec<D> at = per_h * (x - s * n);
+    const double depth = per_h * s;
+    const auto value = Quadratic<D>::monomials(at), slope = Quadratic<D>::derivative(at, n);
+    row.size = std::max(1.0, ratio);
+    for (std::size_t t = 0; t < row.p.size(); ++t) row.p[t] = value[t] + depth * ratio * slope[t];
+    std::size_t t = D;
+    for (int a = 0; a < D; ++a)
+      for (int b = a; b < D; ++b, ++t) {
+        const double laplacian = a == b ? 2.0 : 0.0, along_n = (a == b ? 1.0 : 2.0) * 2.0 * n[a] * n[b];
+        row.p[t] += 0.5 * depth * depth * ((diffusivities - 1.0) * laplacian + along_n);
+      }
+    for (double& term : row.p) term /= row.size;
+    row.foreign = true;
   }
 
   // The row of the surface point that particle j carries, if it has one within reach.
@@ -124,7 +188,7 @@ struct FitWeights : WeightsOfPairs {
   void add_surface_point(const Kernel& kernel, const Vec<D>& x_i, int relation, std::uint32_t j,
                          std::vector<Row<D>>& rows) const {
     const auto point = points->template at<D>(*this, relation, j);
-    if (point.number == 0) return;
+    if (point.number < 1) return;
     const double per_h = 1.0 / smoothing_length();
     const Vec<D> x = point.place - x_i;
     const double w = kernel.w(norm(x));
@@ -165,7 +229,7 @@ struct FitWeights : WeightsOfPairs {
     for (const Row<D>& row : rows) {
       const Mat<D> k_j = row.relation < 0 ? own_tensor<D>(row.j)
                                           : tensor_of<D>(static_cast<std::size_t>(row.relation), row.j);
-      const Mat<D> mean = 0.5 * (k_i + k_j);
+      const Mat<D> mean = row.foreign ? k_i : 0.5 * (k_i + k_j);
       if (!(mean == k_of_g)) {
         g = Quadratic<D>::contraction(moments, mean, h);
         k_of_g = mean;
@@ -177,8 +241,8 @@ struct FitWeights : WeightsOfPairs {
   }
   template <int D>
   double fill_pair(const Row<D>& row, double l) const {
-    stencil->weights[static_cast<std::size_t>(row.relation)][row.entry] = l;
-    return std::abs(l);
+    stencil->weights[static_cast<std::size_t>(row.relation)][row.entry] = l / row.size;
+    return std::abs(l) / row.size;
   }
   template <int D>
   double fill_surface(std::uint64_t i, const Row<D>& row, double l,

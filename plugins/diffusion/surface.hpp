@@ -79,7 +79,36 @@ struct Convection final : ConditionOfCase {
   }
 };
 
-// The number of the condition at the surface point of each particle: 0 no surface point, 1 insulated, 2, 3, ... the
+// The surface points of particles, for those who compute weights.
+struct SurfacePoints {
+  static constexpr int interface = -1;  // number of the points where another body of the physics begins
+
+  explicit SurfacePoints(const char* field) : surface(field) {}
+
+  In<Vector> normal{"normal"};
+  In<Scalar> distance{"signed_distance"};
+  In<Scalar> surface;
+  std::vector<Condition> conditions;
+
+  template <int D>
+  struct Point {
+    int number;  // as FindSurface gives it
+    Vec<D> place, normal;
+  };
+  // That of particle j of a relation, or of the body's own particle j if relation is -1.
+  template <int D, class Op>
+  Point<D> at(const Op& op, int relation, std::uint32_t j) const {
+    const auto k = static_cast<std::size_t>(relation);
+    const auto values = [&](const auto& field) {
+      return relation < 0 ? field.data() : field.of_neighbours(k);
+    };
+    const Vec<D> n = gather_vec<D>(values(normal), j);
+    const Vec<D> x = gather_vec<D>(values(op.position), j) - values(distance)[j] * n;
+    return {static_cast<int>(values(surface)[j]), x, n};
+  }
+};
+
+// The number of the condition at the surface point of each particle: 0 no surface point, -1 another body, 1 insulated, 2, 3, ... the
 // conditions in their order. Once, before the first step.
 // Where two faces are equally near, as at the corner of a lattice, the normal points between them and to no point of
 // the surface: such particles carry none, and their neighbours along both faces do for them. They are told by the
@@ -119,7 +148,8 @@ struct FindSurface : RowOperator {
       const auto axis = static_cast<std::size_t>(a);
       if (x[a] < lower[axis] + slack || x[a] > upper[axis] - slack) return 0.0;
     }
-    if (between_faces(i) || touches_another(i, x)) return 0.0;
+    if (between_faces(i)) return 0.0;
+    if (touches_another(i, x)) return SurfacePoints::interface;
     for (std::size_t c = 0; c < conditions.size(); ++c)
       if (!conditions[c].where || conditions[c].where(D, x.e, 0.0) != 0.0) return static_cast<double>(c + 2);
     return 1.0;
@@ -149,33 +179,6 @@ struct FindSurface : RowOperator {
         if (norm(gather_vec<D>(position.of_neighbours(k), j) - x) < contact * spacing()) return true;
       }
     return false;
-  }
-};
-
-// The surface points of particles, for those who compute weights.
-struct SurfacePoints {
-  explicit SurfacePoints(const char* field) : surface(field) {}
-
-  In<Vector> normal{"normal"};
-  In<Scalar> distance{"signed_distance"};
-  In<Scalar> surface;
-  std::vector<Condition> conditions;
-
-  template <int D>
-  struct Point {
-    int number;  // as FindSurface gives it
-    Vec<D> place, normal;
-  };
-  // That of particle j of a relation, or of the body's own particle j if relation is -1.
-  template <int D, class Op>
-  Point<D> at(const Op& op, int relation, std::uint32_t j) const {
-    const auto k = static_cast<std::size_t>(relation);
-    const auto values = [&](const auto& field) {
-      return relation < 0 ? field.data() : field.of_neighbours(k);
-    };
-    const Vec<D> n = gather_vec<D>(values(normal), j);
-    const Vec<D> x = gather_vec<D>(values(op.position), j) - values(distance)[j] * n;
-    return {static_cast<int>(values(surface)[j]), x, n};
   }
 };
 
