@@ -9,6 +9,7 @@
 #include "fit.hpp"
 #include "integrator.hpp"
 #include "pairwise.hpp"
+#include "source.hpp"
 #include "stencil.hpp"
 #include "step.hpp"
 #include "surface.hpp"
@@ -78,6 +79,7 @@ class OneField {
         bodies_(bodies),
         conditions_(conditions),
         field_(std::move(field)),
+        number_(number),
         loop_("diffusion_of_" + field_ + "_in_" + b.body(bodies.front().index).name) {
     for (const BodyOfMedium& body : bodies_) {
       media_.push_back(body.medium->conductivity(number));
@@ -96,6 +98,7 @@ class OneField {
       const BodyIndex body = bodies_[k].index;
       b_.own_field(body, rate_of(field_).c_str(), at_rate);
       attach_stencil(k, at_rate);
+      attach_source(k, at_rate);
       const auto setup = [&](auto& op) {
         op.set(field_);
         op.stages = stages_;
@@ -167,6 +170,17 @@ class OneField {
                               [&](auto& op) { op.set(field_, stencil); });
   }
 
+  void attach_source(std::size_t k, At at_rate) const {
+    if (!physics_.source.is_set()) return;
+    const std::vector<Expression>& sources = physics_.source;
+    b_.attach<Source>("diffusion.source", at_rate, b_.target(bodies_[k].index), [&](auto& op) {
+      op.set(field_);
+      op.density = sources[std::min(number_, sources.size() - 1)];
+      op.capacity = bodies_[k].medium->capacity();
+      op.stages = stages_;
+    });
+  }
+
   template <class Weights>
   void attach_weights(std::size_t k, const std::shared_ptr<Stencil>& stencil) const {
     for (const At at : {at_start, at_before})
@@ -178,6 +192,8 @@ class OneField {
           if (other != k) op.capacities.push_back(bodies_[other].medium->capacity());
         op.moving = physics_.inside.is_set();
         if (has_surface()) op.set_surface(field_, conditions_);
+        if constexpr (std::is_same_v<Weights, FitWeights>)
+          op.monotone = physics_.scheme.value() == "monotone";
       });
   }
 
@@ -208,7 +224,9 @@ class OneField {
   const Diffusion& physics_;
   const std::vector<BodyOfMedium>& bodies_;
   const std::vector<Condition>& conditions_;
-  std::string field_, loop_;
+  std::string field_;
+  std::size_t number_;
+  std::string loop_;
   std::vector<Conductivity> media_;
   bool isotropic_ = true;
   std::vector<std::shared_ptr<const Stencil>> stencils_;

@@ -31,11 +31,14 @@ struct Diffusion final : Physics {
                              ObjectsOf{SHOAL_TYPE_MATERIAL},
                              optional,
                              example("{diffusion.medium: {diffusivity: 1e-7}}")};
-  Param<Choice> scheme{"scheme", nullptr,
-                       "accurate: second order on any particles and at surfaces, for coefficients that are "
-                       "smooth. conservative: "
-                       "keeps the content to rounding, and the flux continuous where coefficients jump.",
-                       one_of("accurate", "conservative"), default_to("accurate")};
+  Param<Choice> scheme{
+      "scheme", nullptr,
+      "accurate: second order on any particles and at surfaces, for coefficients that are smooth in a body. "
+      "conservative: keeps the content to rounding, and the flux continuous where coefficients jump. "
+      "monotone: as "
+      "accurate where no weight is negative, else with some diffusion added, so that no new extrema come "
+      "into being.",
+      one_of("accurate", "conservative", "monotone"), default_to("accurate")};
   Param<std::vector<ObjectHandle>> boundaries{
       "boundaries",
       nullptr,
@@ -45,6 +48,11 @@ struct Diffusion final : Physics {
       ObjectsOf{SHOAL_TYPE_PHYSICS},
       optional,
       example("[diffusion.fixed_value: {where: x < 1e-6, value: 293}]")};
+  Param<std::vector<Expression>> source{"source", "1",
+                                        "What comes into being in the bodies: W/m3 of heat, or unit of the "
+                                        "field per second; expressions of x, y, z, t, "
+                                        "for all fields or one for each.",
+                                        optional, example("1e5*exp(-t/10)")};
   Param<std::string> inside{
       "inside", nullptr,
       "Loop and stage of another plugin in which the loop of diffusion runs, for fields that a moving body "

@@ -22,6 +22,7 @@
 #include <memory>
 #include <vector>
 
+#include "monotone.hpp"
 #include "pairwise.hpp"
 #include "small_matrix.hpp"
 #include "stencil.hpp"
@@ -61,6 +62,15 @@ struct Quadratic {
           g[static_cast<std::size_t>(c)] += 2.0 / (h * h) * k(a, b) * inverse(row, c);
     return g;
   }
+  // The same of a when it is multiplied with it: K : d2 c + (div K) . grad c
+  static Terms target(const Mat<D>& k, const Vec<D>& divergence, double h) {
+    Terms g{};
+    std::size_t row = 0;
+    for (int a = 0; a < D; ++a) g[row++] = divergence[a] / h;
+    for (int a = 0; a < D; ++a)
+      for (int b = a; b < D; ++b) g[row++] = 2.0 / (h * h) * k(a, b);
+    return g;
+  }
   static double dot(const Terms& a, const Terms& b) {
     double sum = 0;
     for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
@@ -69,7 +79,8 @@ struct Quadratic {
 };
 
 // Computes the weights of pairs and of surface points where particles have moved since the last time.
-struct FitWeights : WeightsOfPairs {
+class FitWeights : public WeightsOfPairs {
+ public:
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {
     if (!active()) return;
@@ -79,7 +90,7 @@ struct FitWeights : WeightsOfPairs {
       std::vector<Row<D>> rows;
       for (std::uint64_t i = chunk.begin; i < chunk.end; ++i) {
         gather_rows<D>(kernel, i, rows);
-        double sum = fit_row<D>(i, rows, surface);
+        double sum = monotone ? monotone_row<D>(i, rows, surface) : fit_row<D>(i, rows, surface);
         if (sum < 0.0) sum = pairwise_row<D>(kernel, lattice, i, surface);
         row_sum.update(Particle<D>{i, chunk.partial}, sum);
       }
@@ -89,6 +100,8 @@ struct FitWeights : WeightsOfPairs {
   void run_chunk_scalar(const shoal_chunk& chunk) const {
     run_chunk<D>(chunk);
   }
+
+  bool monotone = false;
 
  private:
   template <int D>
@@ -239,6 +252,55 @@ struct FitWeights : WeightsOfPairs {
     }
     return total;
   }
+  // The row of the monotone scheme (monotone.hpp).
+  template <int D>
+  double monotone_row(std::uint64_t i, const std::vector<Row<D>>& rows,
+                      std::vector<SurfaceWeight>& surface) const {
+    using Q = Quadratic<D>;
+    std::vector<MonotoneRow<Q::terms>> plain;
+    for (const Row<D>& row : rows) {
+      const bool data_alone =
+          row.condition == 1 ||
+          (row.condition > 1 && points->conditions[static_cast<std::size_t>(row.condition - 2)].a == 0.0);
+      plain.push_back({row.p, row.weight, !data_alone});
+    }
+    const auto multipliers = monotone_multipliers<D, Q::terms>(
+        plain, Q::target(own_tensor<D>(i), divergence<D>(i), smoothing_length()));
+    double total = 0;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const double along = Q::dot(multipliers, rows[r].p);
+      const double l = plain[r].weight / capacity * (plain[r].bounded ? std::max(0.0, along) : along);
+      total += rows[r].condition == 0 ? fill_pair<D>(rows[r], l) : fill_surface<D>(i, rows[r], l, surface);
+    }
+    return total;
+  }
+
+  // div K at particle i, from a linear fit of K over the neighbours in its body.
+  template <int D>
+  Vec<D> divergence(std::uint64_t i) const {
+    const Mat<D> k_i = own_tensor<D>(i);
+    const Vec<D> x_i = position[Particle<D>{i, nullptr}];
+    SmallMatrix<D> moments;
+    Mat<D> sums[D] = {};  // of x_c (K_j - K_i)
+    bool varies = false;
+    for (std::uint32_t m = 0; m < neighbours(0).counts[i]; ++m) {
+      const std::uint32_t j = neighbours(0).indices[neighbours(0).offsets[i] + m];
+      const Vec<D> x = gather_vec<D>(position.of_neighbours(0), j) - x_i;
+      const Mat<D> more = tensor_of<D>(0, j) - k_i;
+      varies = varies || !(more == Mat<D>{});
+      for (int c = 0; c < D; ++c) {
+        sums[c] += x[c] * more;
+        for (int b = 0; b < D; ++b) moments(c, b) += x[c] * x[b];
+      }
+    }
+    Vec<D> result{};
+    if (!varies || invert(moments) < 1e-8) return result;
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b)
+        for (int c = 0; c < D; ++c) result[a] += moments(b, c) * sums[c](a, b);
+    return result;
+  }
+
   template <int D>
   double fill_pair(const Row<D>& row, double l) const {
     stencil->weights[static_cast<std::size_t>(row.relation)][row.entry] = l / row.size;

@@ -30,9 +30,9 @@ struct OuterStep : ParticleOperator<OuterStep> {
   Integrator integrator = Integrator::rk2;
   double cfl = 1;
   double accuracy = 1e-4;
-  double duration = 1;    // s, of the run
-  int most_stages = 201;  // rounding errors grow with s^2
-  std::string what;       // field and body, for the log
+  double duration = 1;     // s, of the run
+  int most_stages = 1001;  // rounding errors grow with s^2
+  std::string what;        // field and body, for the log
 
   double time_step(double) const {
     const double explicit_step = cfl * 2.0 / spectral_radius();

@@ -198,3 +198,101 @@ TEST_CASE("a particle with too few neighbours for a fit has the row of the conse
   CHECK(fitted->weights[0][0] > 0.0);
   CHECK(fitted->weights[0] == pairwise->weights[0]);
 }
+
+namespace {
+
+// Two halves of the unit square side by side, with k = 1 and k = `jump`; all that belongs to the right one is moved there.
+struct Halves {
+  Body left{2, lattice(2, dx, 10)}, right{2, lattice(2, dx, 10)};
+
+  explicit Halves(double jump) {
+    for (Body* body : {&left, &right}) {
+      set_surface(*body);
+      body->set("volume", dx * dx);
+      body->set("c_conductivity", body == &left ? 1.0 : jump);
+    }
+    // Faces of value 0 and 1 at x = 0 and 2, the interface at x = 1, insulated at y = 0 and 1.
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      const double in_left = left["c_surface"][i], in_right = right["c_surface"][i];
+      left["c_surface"][i] = in_left == 2.0 ? 2.0 : in_left == 3.0 ? -1.0 : in_left > 0.0 ? 1.0 : 0.0;
+      right["c_surface"][i] = in_right == 3.0 ? 2.0 : in_right == 2.0 ? -1.0 : in_right > 0.0 ? 1.0 : 0.0;
+    }
+    for (std::size_t i = 0; i < right.size(); ++i) right["position"][2 * i] += 1.0;
+  }
+};
+
+std::vector<double> rates(Body& own, Body& other, double data) {
+  const auto stencil = new_stencil();
+  stencil->motions.push_back(std::make_shared<Motion>());
+  FitWeights weights;
+  weights.set("c", true, stencil);
+  std::vector<Condition> value(1);
+  value[0].a = 1, value[0].b = 0;
+  weights.set_surface("c", value);
+  weights.capacities = {1.0, 1.0};
+  const Setup setup{.smoothing_length = h, .spacing = dx};
+  testing::run(weights, own, {&own, &other}, setup);
+  own.set("c_rate", 0.0);
+  own.set("c_surface_data", data);
+  ApplyStencil pairs;
+  pairs.set("c", stencil);
+  testing::run(pairs, own, {&own, &other}, setup);
+  ApplySurface surface;
+  surface.set("c", stencil);
+  testing::run(surface, own, {&own}, setup);
+  return own["c_rate"];
+}
+
+}  // namespace
+
+TEST_CASE("the steady state across a jump of a million stays what it is: the flux is continuous") {
+  for (const double jump : {1.0, 1e6, 1e-6}) {
+    Halves both(jump);
+    // From 0 at x = 0 to 1 at x = 2 with the flux q everywhere
+    const double q = 1.0 / (1.0 + 1.0 / jump);
+    both.left.set_each("c", 1, [&](std::size_t i, std::size_t) { return q * both.left["position"][2 * i]; });
+    both.right.set_each("c", 1, [&](std::size_t i, std::size_t) {
+      return 1.0 - q / jump * (2.0 - both.right["position"][2 * i]);
+    });
+    // Rates over those of a flux that changes by q from one particle to the next
+    const double scale = q / dx;
+    for (const double rate : rates(both.left, both.right, 0.0)) CHECK(std::abs(rate) < 1e-6 * scale);
+    for (const double rate : rates(both.right, both.left, 1.0)) CHECK(std::abs(rate) < 1e-6 * scale);
+  }
+}
+
+TEST_CASE(
+    "monotone weights are never negative; at ratio 10 they are exact for quadratic fields, at 1000 for "
+    "linear ones") {
+  for (const auto& [ratio, jitter] : {std::pair{10.0, 0.0}, {10.0, 0.1}, {1000.0, 0.0}, {1000.0, 0.1}}) {
+    Body body(2, lattice(2, dx, 12, jitter));
+    const double c30 = std::cos(std::numbers::pi / 6), s30 = 0.5, across = 1.0 / ratio;
+    const double K[4] = {across + (1 - across) * c30 * c30, (1 - across) * c30 * s30,
+                         (1 - across) * c30 * s30, across + (1 - across) * s30 * s30};
+    QuadraticField c(2);
+    if (ratio > 100) c.H.assign(9, 0.0);
+    body.set("volume", dx * dx);
+    body.set_each("c_conductivity", 4, [&](std::size_t, std::size_t ab) { return K[ab]; });
+    body.set_each("c", 1, [&](std::size_t i, std::size_t) { return c.value(&body["position"][2 * i]); });
+    const auto stencil = new_stencil();
+    FitWeights weights;
+    weights.monotone = true;
+    weights.set("c", false, stencil);
+    testing::run(weights, body, {&body}, {.smoothing_length = 1.3 * h, .spacing = dx});
+    for (const double l : stencil->weights[0]) CHECK(l >= 0.0);
+    ApplyStencil apply;
+    apply.set("c", stencil);
+    testing::run(apply, body, {&body}, {.smoothing_length = 1.3 * h, .spacing = dx});
+    double exact = 0;
+    for (std::size_t a = 0; a < 2; ++a)
+      for (std::size_t b = 0; b < 2; ++b) exact += K[2 * a + b] * c.H[3 * a + b];
+    int inside = 0;
+    for (std::size_t i = 0; i < body.size(); ++i) {
+      const double x = body["position"][2 * i], y = body["position"][2 * i + 1];
+      if (std::min({x, y, 1.2 - x, 1.2 - y}) < 2.6 * h) continue;
+      ++inside;
+      CHECK(std::abs(body["c_rate"][i] - exact) < 1e-3 * (std::abs(exact) + 1.0));
+    }
+    CHECK(inside > 5);
+  }
+}
