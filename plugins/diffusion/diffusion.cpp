@@ -73,10 +73,12 @@ std::vector<Condition> conditions_of(const Diffusion& physics, int dimensions) {
 class OneField {
  public:
   OneField(const Builder& b, const Diffusion& physics, const std::vector<BodyOfMedium>& bodies,
-           const std::vector<Condition>& conditions, std::string field, std::size_t number)
+           const std::vector<BodyOfMedium>& walls, const std::vector<Condition>& conditions,
+           std::string field, std::size_t number)
       : b_(b),
         physics_(physics),
         bodies_(bodies),
+        walls_(walls),
         conditions_(conditions),
         field_(std::move(field)),
         number_(number),
@@ -92,8 +94,9 @@ class OneField {
     const At at_rate{loop_.c_str(), "rate"}, at_update{loop_.c_str(), "update"};
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       attach_conductivity(k);
-      if (has_surface()) attach_surface(k, at_rate);
+      if (has_surface() && !moving()) attach_surface(k, at_rate);
     }
+    for (const BodyOfMedium& wall : walls_) attach_wall(wall);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       const BodyIndex body = bodies_[k].index;
       b_.own_field(body, rate_of(field_).c_str(), at_rate);
@@ -114,9 +117,12 @@ class OneField {
   }
 
  private:
-  void attach_conductivity(std::size_t k) const {
-    const auto setup = [&](auto& op) { op.set(field_, media_[k]); };
-    const Target target = b_.target(bodies_[k].index);
+  bool moving() const { return physics_.inside.is_set(); }
+
+  void attach_conductivity(std::size_t k) const { attach_conductivity(bodies_[k].index, media_[k]); }
+  void attach_conductivity(BodyIndex body, const Conductivity& medium) const {
+    const auto setup = [&](auto& op) { op.set(field_, medium); };
+    const Target target = b_.target(body);
     if (isotropic_)
       b_.attach<ScalarConductivity>("diffusion.coefficient", at_start, target, setup);
     else
@@ -128,6 +134,7 @@ class OneField {
     std::vector<BodyIndex> neighbours{bodies_[k].index};
     for (std::size_t other = 0; other < bodies_.size(); ++other)
       if (other != k) neighbours.push_back(bodies_[other].index);
+    for (const BodyOfMedium& wall : walls_) neighbours.push_back(wall.index);
     return b_.target(bodies_[k].index, neighbours);
   }
 
@@ -159,6 +166,7 @@ class OneField {
     stencil->motions.push_back(bodies_[k].motion);
     for (std::size_t other = 0; other < bodies_.size(); ++other)
       if (other != k) stencil->motions.push_back(bodies_[other].motion);
+    for (const BodyOfMedium& wall : walls_) stencil->motions.push_back(wall.motion);
     if (physics_.scheme.value() == "conservative")
       attach_weights<PairwiseWeights>(k, stencil);
     else
@@ -190,27 +198,42 @@ class OneField {
         op.capacities.push_back(op.capacity);
         for (std::size_t other = 0; other < bodies_.size(); ++other)
           if (other != k) op.capacities.push_back(bodies_[other].medium->capacity());
-        op.moving = physics_.inside.is_set();
+        op.first_wall = bodies_.size();
+        op.moving = moving();
         if (has_surface()) op.set_surface(field_, conditions_);
         if constexpr (std::is_same_v<Weights, FitWeights>)
           op.monotone = physics_.scheme.value() == "monotone";
       });
   }
 
-  // Whether surfaces of the bodies are known: not those of bodies that move.
+  // Whether surface points are looked at: those of bodies at rest, and of walls.
   bool has_surface() const {
-    return !physics_.inside.is_set() && (physics_.scheme.value() != "conservative" || !conditions_.empty());
+    if (moving()) return !walls_.empty();
+    return physics_.scheme.value() != "conservative" || !conditions_.empty();
+  }
+
+  // A wall needs a coefficient, for the means of pairs, and its surface points.
+  void attach_wall(const BodyOfMedium& wall) const {
+    attach_conductivity(wall.index, wall.medium->conductivity(number_));
+    b_.attach<FindSurface>("diffusion.surface", at_start, b_.target(wall.index), [&](auto& op) {
+      op.set(field_);
+      set_periodic_faces(op);
+    });
+  }
+
+  void set_periodic_faces(FindSurface& op) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const bool periodic = b_.periodic(static_cast<int>(a));
+      op.lower[a] = periodic ? b_.raw().lower[a] : -HUGE_VAL;
+      op.upper[a] = periodic ? b_.raw().upper[a] : HUGE_VAL;
+    }
   }
 
   void attach_surface(std::size_t k, At at_rate) const {
     b_.attach<FindSurface>("diffusion.surface", at_start, target_of(k), [&](auto& op) {
       op.set(field_);
       op.conditions = conditions_;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const bool periodic = b_.periodic(static_cast<int>(a));
-        op.lower[a] = periodic ? b_.raw().lower[a] : -HUGE_VAL;
-        op.upper[a] = periodic ? b_.raw().upper[a] : HUGE_VAL;
-      }
+      set_periodic_faces(op);
     });
     if (conditions_.empty()) return;
     b_.attach<SurfaceData>("diffusion.surface_data", at_rate, b_.target(bodies_[k].index), [&](auto& op) {
@@ -223,6 +246,7 @@ class OneField {
   const Builder& b_;
   const Diffusion& physics_;
   const std::vector<BodyOfMedium>& bodies_;
+  const std::vector<BodyOfMedium>& walls_;
   const std::vector<Condition>& conditions_;
   std::string field_;
   std::size_t number_;
@@ -246,15 +270,17 @@ void Diffusion::build(const Builder& b) {
   } else {
     b.loop("diffusion", {"before", "diffuse", "after"});
   }
-  std::vector<BodyOfMedium> with_media;
+  std::vector<BodyOfMedium> with_media, kept;
   for (const BodyIndex body : bodies.value()) with_media.push_back({body, medium_of(b, *this, body)});
+  for (const BodyIndex wall : walls.value()) kept.push_back({wall, medium_of(b, *this, wall)});
   for (const At at : {at_start, at_before})
-    for (const BodyOfMedium& body : with_media)
-      b.attach<WatchMotion>("diffusion.watch", at, b.target(body.index),
-                            [&](auto& op) { op.motion = body.motion; });
+    for (const auto* some : {&with_media, &kept})
+      for (const BodyOfMedium& body : *some)
+        b.attach<WatchMotion>("diffusion.watch", at, b.target(body.index),
+                              [&](auto& op) { op.motion = body.motion; });
   const std::vector<Condition> conditions = conditions_of(*this, b.dimensions());
   for (std::size_t k = 0; k < fields->size(); ++k)
-    OneField(b, *this, with_media, conditions, fields.value()[k].name, k).attach();
+    OneField(b, *this, with_media, kept, conditions, fields.value()[k].name, k).attach();
 }
 
 }  // namespace shoal::diffusion

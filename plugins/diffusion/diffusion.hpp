@@ -53,6 +53,11 @@ struct Diffusion final : Physics {
                                         "field per second; expressions of x, y, z, t, "
                                         "for all fields or one for each.",
                                         optional, example("1e5*exp(-t/10)")};
+  Param<std::vector<BodyIndex>> walls{"walls", nullptr,
+                                      "Bodies that keep their values of the fields, as they are given at the "
+                                      "start; the surface of one is where the "
+                                      "bodies see its value.",
+                                      optional, example("[heated_plate]")};
   Param<std::string> inside{
       "inside", nullptr,
       "Loop and stage of another plugin in which the loop of diffusion runs, for fields that a moving body "

@@ -128,11 +128,16 @@ class FitWeights : public WeightsOfPairs {
       const shoal_neighbours& list = neighbours(k);
       for (std::uint64_t entry = list.offsets[i]; entry < list.offsets[i] + list.counts[i]; ++entry) {
         const std::uint32_t j = list.indices[entry];
-        const Vec<D> x = gather_vec<D>(position.of_neighbours(k), j) - x_i;
+        Vec<D> x = gather_vec<D>(position.of_neighbours(k), j) - x_i;
+        if (k >= first_wall) {  // the value of a wall holds at its surface
+          const auto point = points->template at<D>(*this, static_cast<int>(k), j);
+          if (point.number == 0) continue;
+          x = point.place - x_i;
+        }
         const double w = kernel.w(norm(x));
         if (w > 0.0)
           rows.push_back({Quadratic<D>::monomials(per_h * x), w, 1.0, static_cast<int>(k), j, entry, 0});
-        if (w > 0.0 && points && k > 0) cross_interface<D>(i, x, interface, rows.back());
+        if (w > 0.0 && points && k > 0 && k < first_wall) cross_interface<D>(i, x, interface, rows.back());
         if (points && k == 0) add_surface_point<D>(kernel, x_i, 0, j, rows);
       }
     }
@@ -147,7 +152,7 @@ class FitWeights : public WeightsOfPairs {
   template <int D>
   void gather_interface(std::uint64_t i, std::vector<InterfacePoint<D>>& interface) const {
     interface.clear();
-    if (!points || n_relations() < 2) return;
+    if (!points || std::min(n_relations(), first_wall) < 2) return;
     const Vec<D> x_i = position[Particle<D>{i, nullptr}];
     const auto add = [&](int relation, std::uint32_t j) {
       const auto point = points->template at<D>(*this, relation, j);
@@ -155,7 +160,7 @@ class FitWeights : public WeightsOfPairs {
       interface.push_back({point.place - x_i, (relation > 0 ? -1.0 : 1.0) * point.normal});
     };
     add(-1, static_cast<std::uint32_t>(i));
-    for (std::size_t k = 0; k < n_relations(); ++k)
+    for (std::size_t k = 0; k < std::min(n_relations(), first_wall); ++k)
       for (std::uint32_t m = 0; m < neighbours(k).counts[i]; ++m)
         add(static_cast<int>(k), neighbours(k).indices[neighbours(k).offsets[i] + m]);
   }

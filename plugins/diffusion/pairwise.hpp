@@ -92,9 +92,10 @@ class WeightsOfPairs : public RowOperator {
   Maximum row_sum;
 
   std::shared_ptr<Stencil> stencil;
-  double capacity = 1;             // J/(m3 K), or 1
-  std::vector<double> capacities;  // of the bodies of the relations
-  bool moving = false;             // no power iteration then: weights are renewed all the time
+  double capacity = 1;                // J/(m3 K), or 1
+  std::vector<double> capacities;     // of the bodies of the relations
+  std::size_t first_wall = SIZE_MAX;  // relations from here on are with walls
+  bool moving = false;                // no power iteration then: weights are renewed all the time
 
   void set(const std::string& field, bool isotropic, std::shared_ptr<Stencil> weights) {
     const char* name = names_.keep(conductivity_of(field));
