@@ -13,7 +13,8 @@ SHOAL_PLUGIN(diffusion, "0.1.0") {
   add<Diffusion>("diffusion.diffusion",
                  "Diffusion of one or several fields: heat, species, potentials. Take it for bodies at rest, "
                  "alone or with reactions, and, with 'inside', for what a fluid carries along.",
-                 "Cleary, Monaghan 1999, doi:10.1006/jcph.1998.6118");
+                 "Cleary, Monaghan 1999, doi:10.1006/jcph.1998.6118; Meyer, Balsara, Aslam 2014, "
+                 "doi:10.1016/j.jcp.2013.08.021");
   add<FixedValue>("diffusion.fixed_value",
                   "A given value at the surface; under 'boundaries' of diffusion.diffusion.");
   add<Flux>("diffusion.flux", "A given flux through the surface; under 'boundaries' of diffusion.diffusion.");
