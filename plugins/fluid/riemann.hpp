@@ -69,7 +69,7 @@ struct VelocityDivergence : PairOperator<VelocityDivergence> {
   auto pair(const auto& p) const {
     const auto weight = p.j(volume) * p.dW_over_r();
     const auto v_r = dot(p.i(velocity) - p.j(velocity), p.r_ij());
-    const auto jump = -v_r / p.r();  // u_L - u_R
+    const auto jump = -v_r * p.per_r();  // u_L - u_R
     const auto beta = min(1.0, max(least, (limiter / sound_speed) * jump));
     return sums(weight * v_r, (weight * beta * jump) * p.r_ij());
   }

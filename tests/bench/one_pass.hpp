@@ -32,7 +32,7 @@ struct OnePass : PairOperator<OnePass> {
                  per_impedance = 1.0 / impedance;
     const auto weight = constants.mass / p.j(density) * p.dW_over_r();
     const auto v_r = dot(p.i(velocity) - p.j(velocity), p.r_ij());
-    const auto jump = -v_r / p.r();
+    const auto jump = -v_r * p.per_r();
     const auto beta = min(1.0, max(0.0, (3.0 / constants.sound_speed) * jump));
     const auto p_star = p.i(pressure) + p.j(pressure) + impedance * beta * jump;
     return sums((weight * p_star) * p.r_ij(),

@@ -103,6 +103,8 @@ struct Pack {
   friend Pack max(Pack a, Pack b) { return from_raw(simd::max(a.v, b.v)); }
   friend Pack abs(Pack a) { return from_raw(simd::abs(a.v)); }
   friend Pack sqrt(Pack a) { return from_raw(simd::sqrt(a.v)); }
+  /// 1 / sqrt(a) for positive normal a, within 2 units in the last place.
+  friend Pack inverse_sqrt(Pack a) { return from_raw(simd::inverse_sqrt(a.v)); }
 
   /// Sum of all lanes in one fixed order: the upper half is added to the lower half until one lane is left,
   /// ((0+4)+(2+6)) + ((1+5)+(3+7)) for 8 lanes, (0+2)+(1+3) for 4.
@@ -181,6 +183,7 @@ inline constexpr double min(double a, double b) { return a < b ? a : b; }
 inline constexpr double max(double a, double b) { return a > b ? a : b; }
 inline double abs(double a) { return std::fabs(a); }
 inline double sqrt(double a) { return std::sqrt(a); }
+inline double inverse_sqrt(double a) { return 1.0 / std::sqrt(a); }
 inline double exp(double a) { return std::exp(a); }
 inline double log(double a) { return std::log(a); }
 inline double pow(double a, double b) { return std::pow(a, b); }

@@ -96,15 +96,24 @@ class Pair {
        const double* x_of_neighbours, Indices j)
       : kernel_(kernel), relation_(relation), i_(i), j_(j), r_ij_(x_i - gather_vec<D>(x_of_neighbours, j)) {
     // Coincident particles have no direction: the limit makes e = 0 there, not NaN.
-    r_ = sqrt(max(R(1e-200), squared_norm(r_ij_)));
+    const R squared = max(R(1e-200), squared_norm(r_ij_));
+    if constexpr (simd::fast_inverse_sqrt && !std::is_same_v<R, double>) {
+      per_r_ = inverse_sqrt(squared);
+      r_ = squared * per_r_;
+    } else {
+      r_ = sqrt(squared);
+      per_r_ = R(1.0) / r_;
+    }
   }
 
   // Distance |r_i - r_j| in m.
   R r() const { return r_; }
+  // 1 / r, which costs less than a division.
+  R per_r() const { return per_r_; }
   // r_i - r_j in m.
   const Vec<D, R>& r_ij() const { return r_ij_; }
   // Unit vector from j to i.
-  Vec<D, R> e() const { return (R(1.0) / r_) * r_ij_; }
+  Vec<D, R> e() const { return per_r_ * r_ij_; }
   // Smoothing kernel in 1/m^D, its derivative dW/dr <= 0, (dW/dr)/r, and its gradient with respect to r_i.
   R W() const { return kernel_.w(r_); }
   R dW() const { return kernel_.dw(r_); }
@@ -148,7 +157,7 @@ class Pair {
   Particle<D> i_;
   Indices j_;
   Vec<D, R> r_ij_;
-  R r_;
+  R r_, per_r_;
 };
 
 template <class Derived>
@@ -223,7 +232,8 @@ class PairOperator : public OperatorBase {
   // The value of one pack of pairs, with what is kept of them where the operator keeps something. `entry` is their
   // place in the list.
   template <class P>
-  auto value_of(const P& p, [[maybe_unused]] std::size_t k, [[maybe_unused]] std::uint64_t entry) const {
+  [[gnu::always_inline]] auto value_of(const P& p, [[maybe_unused]] std::size_t k,
+                                       [[maybe_unused]] std::uint64_t entry) const {
     if constexpr (stores<P>) {
       using Kept = decltype(self().store(p));
       return self().pair(p, pair_loop::get<Kept>(kept_[k].at(entry, pair_loop::numbers<Kept>)));
@@ -254,8 +264,10 @@ class PairOperator : public OperatorBase {
     }
   }
 
+  // A function of its own with all pair code inside: left to its heuristics the compiler inlines too much around it, or
+  // too little in it, and spills the lanes (measured: half the speed).
   template <int D, class R, class Kernel>
-  void rows(const Kernel& kernel, const shoal_chunk& chunk) const {
+  [[gnu::noinline, gnu::flatten]] void rows(const Kernel& kernel, const shoal_chunk& chunk) const {
     using Result = decltype(value_of(std::declval<const Pair<D, R, Kernel>&>(), 0, 0));
     for (std::uint64_t index = chunk.begin; index < chunk.end; ++index) {
       if constexpr (requires { Derived::skips_lonely; })
