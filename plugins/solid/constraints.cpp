@@ -7,9 +7,8 @@
 namespace shoal::solid {
 
 void PrescribedMotion::begin() {
-  const double* x = reference_position.data();
   if (!region.looked()) {
-    region.look(dimensions(), n_particles(), x);
+    region.look(dimensions(), n_particles(), reference_position.data());
     for (std::size_t k = 0; k < 3; ++k) {
       value_[k].assign(motion == Motion::displacement ? n_particles() : 0, 0.0);
       rate_[k].assign(motion != Motion::held ? n_particles() : 0, 0.0);
@@ -23,14 +22,14 @@ void PrescribedMotion::begin() {
     if (!axes[k]) continue;
     const Expression& expression = given.component[k];
     if (motion == Motion::velocity) {
-      expression.evaluate(dimensions(), n_particles(), x, end, rate_[k].data());
+      region.evaluate(expression, dimensions(), end, rate_[k]);
       continue;
     }
-    expression.evaluate(dimensions(), n_particles(), x, end, value_[k].data());
+    region.evaluate(expression, dimensions(), end, value_[k]);
     if (half_step) continue;
-    expression.evaluate(dimensions(), n_particles(), x, end + delta, rate_[k].data());
-    expression.evaluate(dimensions(), n_particles(), x, end - delta, before.data());
-    for (std::uint64_t i = 0; i < n_particles(); ++i) rate_[k][i] = (rate_[k][i] - before[i]) / (2.0 * delta);
+    region.evaluate(expression, dimensions(), end + delta, rate_[k]);
+    region.evaluate(expression, dimensions(), end - delta, before);
+    for (const std::uint64_t i : region.particles()) rate_[k][i] = (rate_[k][i] - before[i]) / (2.0 * delta);
   }
 }
 
@@ -47,17 +46,29 @@ std::array<bool, 3> axes_of(const Param<std::vector<Choice>>& axes, int dimensio
   return chosen;
 }
 
+void attach_reaction(const Builder& b, BodyIndex body, const Region& region,
+                     const std::array<bool, 3>& axes) {
+  b.attach<ReactionForce>(
+      "solid.reaction_force", {SHOAL_SAMPLE, "reactions"}, b.target(body),
+      [&](auto& op) {
+        op.region = region;
+        op.axes = axes;
+      },
+      SHOAL_OPERATOR_ON_DEMAND);
+}
+
 }  // namespace
 
 void Clamp::build(const Builder& b) {
   declare_loop(b);
   for (const BodyIndex body : bodies.value()) {
     const auto setup = [&](PrescribedMotion& op) {
-      op.region = region_of(where, within, b.dimensions());
+      op.region.region = region_of(where, within, b.dimensions());
       op.axes = axes_of(axes, b.dimensions());
     };
     b.attach<PrescribedMotion>("solid.clamp", {SHOAL_INITIAL, "constraints"}, b.target(body), setup);
     b.attach<PrescribedMotion>("solid.clamp", at_constraints, b.target(body), setup);
+    attach_reaction(b, body, region_of(where, within, b.dimensions()), axes_of(axes, b.dimensions()));
   }
 }
 
@@ -67,7 +78,7 @@ void PrescribedMotionPhysics::build(const Builder& b) {
     throw CaseError("solid.prescribed_motion needs either a displacement or a velocity");
   for (const BodyIndex body : bodies.value()) {
     const auto setup = [&](PrescribedMotion& op) {
-      op.region = region_of(where, within, b.dimensions());
+      op.region.region = region_of(where, within, b.dimensions());
       op.axes = axes_of(axes, b.dimensions());
       op.motion = displacement.is_set() ? Motion::displacement : Motion::velocity;
       op.given = displacement.is_set() ? displacement.value() : velocity.value();
@@ -81,6 +92,7 @@ void PrescribedMotionPhysics::build(const Builder& b) {
                                    op.half_step = true;
                                  });
     b.attach<PrescribedMotion>("solid.prescribed_motion", at_constraints, b.target(body), setup);
+    attach_reaction(b, body, region_of(where, within, b.dimensions()), axes_of(axes, b.dimensions()));
   }
 }
 

@@ -9,6 +9,9 @@
 // on CSM1: without it the structure is too long by about half a spacing).
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "region.hpp"
 #include "shoal/particle_operator.hpp"
 #include "shoal/physics.hpp"
@@ -23,7 +26,7 @@ struct PrescribedMotion : ParticleOperator<PrescribedMotion> {
   InOut<Vector> position{"position"};
   InOut<Vector> velocity{"velocity"};
 
-  Region region;
+  RegionValues region;
   Motion motion = Motion::held;
   VectorExpression given;
   std::array<bool, 3> axes{true, true, true};
@@ -46,6 +49,30 @@ struct PrescribedMotion : ParticleOperator<PrescribedMotion> {
 
  private:
   std::array<std::vector<double>, 3> value_, rate_;  // displacement, velocity
+};
+
+// The force that a constraint exerts on its particles against stress and loads, -m a; their inertia is not in it. Several
+// constraints of a body add to the same field, so each writes its own particles alone.
+struct ReactionForce : ParticleOperator<ReactionForce> {
+  In<Vector> reference_position{"reference_position"};
+  In<Vector> internal{"current_internal_acceleration", unit("m/s2"),
+                      doc("Acceleration by stress at the time of the output.")};
+  In<Vector> acceleration{"acceleration"};
+  In<Scalar> mass{"mass"};
+  InOut<Vector> reaction{"reaction_force", unit("N"), doc("Force of the constraints on a particle.")};
+
+  Region region;
+  std::array<bool, 3> axes{true, true, true};
+
+  void begin() {
+    if (!region.looked()) region.look(dimensions(), n_particles(), reference_position.data());
+  }
+  void particle(auto i) const {
+    if (!region.holds(i.index)) return;
+    for (int a = 0; a < decltype(i)::dimensions; ++a)
+      if (axes[static_cast<std::size_t>(a)])
+        reaction[i][a] = -mass[i] * (internal[i][a] + acceleration[i][a]);
+  }
 };
 
 struct Clamp final : Physics {

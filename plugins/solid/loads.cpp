@@ -7,24 +7,6 @@
 
 namespace shoal::solid {
 
-void LoadedRegion::look(int dimensions, std::uint64_t n, const double* reference_position) {
-  region.look(dimensions, n, reference_position);
-  const auto d = static_cast<std::uint64_t>(dimensions);
-  for (std::uint64_t i = 0; i < n; ++i) {
-    if (!region.holds(i)) continue;
-    particles_.push_back(i);
-    positions_.insert(positions_.end(), reference_position + d * i, reference_position + d * (i + 1));
-  }
-  if (particles_.empty()) throw CaseError("no particle lies in the region of the load");
-  values_.resize(particles_.size());
-}
-
-void LoadedRegion::evaluate(const Expression& expression, int dimensions, double time,
-                            std::vector<double>& out) const {
-  expression.evaluate(dimensions, particles_.size(), positions_.data(), time, values_.data());
-  for (std::size_t k = 0; k < particles_.size(); ++k) out[particles_[k]] = values_[k];
-}
-
 void TractionLoad::begin() {
   const auto d = static_cast<std::size_t>(dimensions());
   if (!loaded.looked()) {

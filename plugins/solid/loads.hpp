@@ -31,15 +31,6 @@ struct Gravity : ParticleOperator<Gravity> {
   }
 };
 
-// Damping in proportion to mass, -c v, to come to rest.
-struct MassDamping : ParticleOperator<MassDamping> {
-  In<Vector> velocity{"velocity"};
-  Accumulate<Vector> acceleration{"acceleration"};
-  double coefficient = 0;  // 1/s
-
-  void particle(auto i) const { acceleration[i] -= coefficient * velocity[i]; }
-};
-
 // The area vectors, once.
 struct SurfaceArea : WeightBuilder {
   Out<Vector> area{"reference_area", unit("m2"), doc("Outward area vector of the reference configuration.")};
@@ -55,32 +46,13 @@ struct SurfaceArea : WeightBuilder {
   }
 };
 
-// What all loads on a part of a body have: its particles, and the values of expressions at them.
-class LoadedRegion {
- public:
-  Region region;
-
-  // The particles, once; the positions of these one after the other.
-  void look(int dimensions, std::uint64_t n, const double* reference_position);
-  bool looked() const { return region.looked(); }
-  const std::vector<std::uint64_t>& particles() const { return particles_; }
-  bool holds(std::uint64_t i) const { return region.holds(i); }
-  // Values of an expression at the particles, written to `out` at the particles' own numbers.
-  void evaluate(const Expression& expression, int dimensions, double time, std::vector<double>& out) const;
-
- private:
-  std::vector<std::uint64_t> particles_;
-  std::vector<double> positions_;
-  mutable std::vector<double> values_;
-};
-
 struct TractionLoad : ParticleOperator<TractionLoad> {
   In<Vector> reference_position{"reference_position"};
   In<Vector> area{"reference_area", unit("m2"), doc("Outward area vector of the reference configuration.")};
   In<Scalar> mass{"mass"};
   Accumulate<Vector> acceleration{"acceleration"};
 
-  LoadedRegion loaded;
+  RegionValues loaded;
   VectorExpression traction;
 
   void begin();
@@ -105,7 +77,7 @@ struct PressureLoad : ParticleOperator<PressureLoad> {
   In<Scalar> mass{"mass"};
   Accumulate<Vector> acceleration{"acceleration"};
 
-  LoadedRegion loaded;
+  RegionValues loaded;
   Expression pressure;
 
   void begin();
@@ -148,7 +120,7 @@ struct TorqueLoad : ParticleOperator<TorqueLoad> {
   In<Scalar> mass{"mass"};
   Accumulate<Vector> acceleration{"acceleration"};
 
-  LoadedRegion loaded;
+  RegionValues loaded;
   Vector3 axis{0, 0, 1};  // of length one
   Expression torque;
 

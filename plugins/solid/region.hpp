@@ -42,6 +42,37 @@ class Region {
   std::vector<std::uint8_t> inside_;
 };
 
+// The particles of a region, and values of expressions at their reference positions.
+class RegionValues {
+ public:
+  Region region;
+
+  void look(int dimensions, std::uint64_t n, const double* reference_position) {
+    region.look(dimensions, n, reference_position);
+    const auto d = static_cast<std::uint64_t>(dimensions);
+    for (std::uint64_t i = 0; i < n; ++i) {
+      if (!region.holds(i)) continue;
+      particles_.push_back(i);
+      positions_.insert(positions_.end(), reference_position + d * i, reference_position + d * (i + 1));
+    }
+    if (particles_.empty()) throw CaseError("no particle lies in the region");
+    values_.resize(particles_.size());
+  }
+  bool looked() const { return region.looked(); }
+  const std::vector<std::uint64_t>& particles() const { return particles_; }
+  bool holds(std::uint64_t i) const { return region.holds(i); }
+  // Written to `out` at the particles' own numbers.
+  void evaluate(const Expression& expression, int dimensions, double time, std::vector<double>& out) const {
+    expression.evaluate(dimensions, particles_.size(), positions_.data(), time, values_.data());
+    for (std::size_t k = 0; k < particles_.size(); ++k) out[particles_[k]] = values_[k];
+  }
+
+ private:
+  std::vector<std::uint64_t> particles_;
+  std::vector<double> positions_;
+  mutable std::vector<double> values_;
+};
+
 inline Region region_of(const Param<Expression>& where, const Param<ObjectHandle>& within, int dimensions) {
   Region region;
   if (where.is_set()) region.where = where.value();

@@ -19,7 +19,8 @@ struct Structure {
   shoal_elastic_constants constants{};
   std::uint32_t kinematics = SHOAL_THREE_DIMENSIONAL;
   ReferenceSettings settings;
-  double hourglass = 0;  // modulus of the hourglass control, Pa
+  double hourglass = 0;   // modulus of the hourglass control, Pa
+  double wave_speed = 0;  // m/s, the largest when last looked at; 0 for laws that do not stiffen
   ReferenceWeights weights;
 
   Stiffness stiffness() const {

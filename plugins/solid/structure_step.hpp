@@ -10,10 +10,13 @@
 // iteration on the undeformed body, and scaled by the speed of waves where the law says that it stiffens.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "shoal/particle_operator.hpp"
-#include "structure.hpp"
+#include "stress.hpp"
 
 namespace shoal::solid {
 
@@ -48,9 +51,41 @@ struct Kick : ParticleOperator<Kick> {
   }
 };
 
+// How fast waves are on top of the deformation, for laws that stiffen: looked at every few steps, since it costs about
+// ten times the stress; the step keeps a fifth in hand for what happens between.
+struct WaveSpeed : ParticleOperator<WaveSpeed> {
+  static constexpr std::uint64_t interval = 10;  // steps
+  In<Matrix> F{"deformation_gradient"};
+  Maximum speed;
+  DeclaredFields law_fields{*this};
+  SharedStructure structure;
+
+  template <int D>
+  void run_chunk(const shoal_chunk& chunk) const {
+    if (step().number % interval != 0) return;
+    std::array<double*, DeclaredFields::most> fields;
+    law_fields.at(chunk.begin, fields.data());
+    const shoal_stress_block block =
+        stress_block(*structure, chunk.end - chunk.begin, F.data() + chunk.begin * D * D, fields.data());
+    std::vector<double> speeds(chunk.end - chunk.begin);
+    check_host(structure->law.api->wave_speed(structure->law.self, &block, speeds.data()));
+    for (const double one : speeds) speed.update(Particle<D>{0, chunk.partial}, one);
+  }
+  void end() {
+    if (step().number % interval == 0) structure->wave_speed = speed.result();
+  }
+  void save(const shoal_stream& stream) const {
+    check_host(stream.write(stream.context, &structure->wave_speed, sizeof(double)));
+  }
+  void load(const shoal_stream& stream) {
+    check_host(stream.read(stream.context, &structure->wave_speed, sizeof(double)));
+  }
+};
+
 // The largest step; looks at no particle but once.
 struct StableStep : WeightBuilder {
-  double factor = 0.8;  // of the limit of the undeformed body
+  double factor = 0.8;   // of the limit of the undeformed body
+  double viscosity = 0;  // Pa s, of Kelvin-Voigt damping: its rate lags, which shortens the step
 
   void begin() {}
   template <int D>
@@ -59,16 +94,22 @@ struct StableStep : WeightBuilder {
   double time_step(double) const {
     if (limit_ == 0.0) {
       build_weights();
-      limit_ = 2.0 / structure->weights.largest_frequency(neighbours(0), structure->stiffness());
+      const double w = structure->weights.largest_frequency(neighbours(0), structure->stiffness());
+      const double c = structure->constants.longitudinal_speed;
+      const double ratio = viscosity * w / (structure->constants.density * c * c);  // of critical damping
+      limit_ = 2.0 / w * (std::sqrt(1.0 + ratio * ratio) - ratio);
       const ForceConsistency& made = structure->weights.consistency();
       char text[160];
       std::snprintf(text, sizeof text,
                     "solid: force of a uniform stress inside %.2g, made %.2g in %d iterations; largest "
                     "frequency %.4g rad/s",
-                    made.before, made.after, made.iterations, 2.0 / limit_);
+                    made.before, made.after, made.iterations, w);
       log_debug(text);
     }
-    return factor * limit_;
+    const double undeformed = structure->constants.longitudinal_speed;
+    // A NaN must not be lost: it stops the run.
+    const double now = structure->wave_speed;
+    return factor * limit_ * (now <= undeformed ? 1.0 : undeformed / now);
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "damping.hpp"
 #include "deformation.hpp"
 #include "loads.hpp"
 #include "measures.hpp"
@@ -12,6 +13,7 @@
 #include "stages.hpp"
 #include "stress.hpp"
 #include "structure_step.hpp"
+#include "volume_averaging.hpp"
 
 namespace shoal::solid {
 namespace {
@@ -61,6 +63,8 @@ struct SolidBody {
   void attach_initial() const {
     b.attach<InitialState>("solid.initial_state", {SHOAL_INITIAL, "state"}, itself(),
                            [&](auto& op) { declare_law_fields(op, true); });
+    if (physics.viscosity > 0.0)
+      b.attach<InitialKelvinVoigt>("solid.kelvin_voigt.initial", {SHOAL_INITIAL, "state"}, itself());
     b.attach<SurfaceArea>(
         "solid.surface_area", {SHOAL_INITIAL, "state"}, reference(),
         [&](auto& op) { op.structure = structure; }, SHOAL_OPERATOR_ON_DEMAND);
@@ -75,6 +79,28 @@ struct SolidBody {
   void on_demand(const char* name) const {
     on_demand<Op>(name, itself(), [](Op&) {});
   }
+  // The averaged volume ratio and what follows from it.
+  bool averages() const {
+    const std::string_view word = physics.average_volume->word;
+    if (word == "never" || structure->law.api->volumetric_pressure == nullptr) return false;
+    return word == "always" || structure->constants.bulk_modulus > 10.0 * structure->constants.shear_modulus;
+  }
+  void attach_averaging(At at, const AveragingFields& names, std::uint32_t flags) const {
+    const auto attach = [&]<class Op>(const char* name, const Target& target) {
+      b.attach<Op>(
+          name, at, target,
+          [&](Op& op) {
+            op.rename(names);
+            if constexpr (requires { op.structure; }) op.structure = structure;
+          },
+          flags);
+    };
+    attach.operator()<VolumeRatio>("solid.volume_ratio", itself());
+    attach.operator()<MeanVolumeRatio>("solid.mean_volume_ratio", reference());
+    attach.operator()<MeanPressureOfVolume>("solid.mean_pressure", itself());
+    attach.operator()<PressureCorrection>("solid.pressure_correction", reference());
+    attach.operator()<CorrectedStress>("solid.corrected_stress", itself());
+  }
   void attach_current_state() const {
     on_demand<DeformationGradient>("solid.deformation_gradient.current", reference(), [&](auto& op) {
       op.structure = structure;
@@ -87,6 +113,7 @@ struct SolidBody {
       op.F.rename("current_deformation_gradient");
       op.P.rename("current_piola_stress");
     });
+    if (averages()) attach_averaging({SHOAL_SAMPLE, "measures"}, current_averaging, SHOAL_OPERATOR_ON_DEMAND);
     on_demand<InternalForce>("solid.internal_force.current", reference(), [&](auto& op) {
       op.structure = structure;
       op.P.rename("current_piola_stress");
@@ -99,34 +126,54 @@ struct SolidBody {
     on_demand<Displacement>("solid.displacement");
     on_demand<CauchyStress>("solid.cauchy_stress", itself(),
                             [&](auto& op) { declare_law_fields(op, false); });
+    if (averages()) on_demand<AveragedCauchyStress>("solid.averaged_cauchy_stress");
     on_demand<VonMises>("solid.von_mises");
     on_demand<PrincipalStress>("solid.principal_stress");
     on_demand<MeanPressure>("solid.pressure");
     on_demand<StrainEnergy>("solid.strain_energy", itself(),
                             [&](auto& op) { declare_law_fields(op, false); });
+    if (averages())
+      on_demand<AveragedStrainEnergy>("solid.averaged_strain_energy", itself(),
+                                      [&](auto& op) { op.structure = structure; });
     const double dx = structure->settings.spacing;
     on_demand<HourglassEnergy>("solid.hourglass_energy", itself(),
                                [&](auto& op) { op.stiffness = structure->hourglass / (dx * dx); });
     on_demand<NonAffine>("solid.non_affine", reference(), [&](auto& op) { op.structure = structure; });
+  }
+  void attach_damping() const {
+    if (physics.damping > 0.0)
+      b.attach<MassDamping>("solid.mass_damping", at_forces, itself(),
+                            [&](auto& op) { op.coefficient = physics.damping; });
+    if (physics.artificial_viscosity > 0.0)
+      b.attach<PairDamping>("solid.pair_damping", at_forces, reference(), [&](auto& op) {
+        op.strength = physics.artificial_viscosity * structure->constants.longitudinal_speed *
+                      structure->settings.smoothing_length;
+      });
   }
   void attach_step() const {
     b.attach<Drift>("solid.drift", at_drift, itself());
     b.attach<DeformationGradient>("solid.deformation_gradient", at_deformation, reference(),
                                   [&](auto& op) { op.structure = structure; });
     b.attach<Stress>("solid.stress", at_stress, itself(), [&](auto& op) { declare_law_fields(op, true); });
+    if (averages()) attach_averaging(at_stress, loop_averaging, 0);
+    if (physics.viscosity > 0.0)
+      b.attach<KelvinVoigt>("solid.kelvin_voigt", at_stress, itself(),
+                            [&](auto& op) { op.viscosity = physics.viscosity; });
+    if (structure->law.api->wave_speed != nullptr)
+      b.attach<WaveSpeed>("solid.wave_speed", at_stress, itself(),
+                          [&](auto& op) { declare_law_fields(op, false); });
     b.attach<InternalForce>("solid.internal_force", at_forces, reference(),
                             [&](auto& op) { op.structure = structure; });
     b.own_field(body, "acceleration", at_forces);
     const Vector3 g = b.gravity();
     if (g != Vector3{})
       b.attach<Gravity>("solid.gravity", at_forces, itself(), [&](auto& op) { op.gravity = g; });
-    if (physics.damping > 0.0)
-      b.attach<MassDamping>("solid.mass_damping", at_forces, itself(),
-                            [&](auto& op) { op.coefficient = physics.damping; });
+    attach_damping();
     b.attach<Kick>("solid.kick", at_kick, itself());
     b.attach<StableStep>("solid.stable_step", at_kick, reference(), [&](auto& op) {
       op.structure = structure;
       op.factor = physics.step_factor;
+      op.viscosity = physics.viscosity;
     });
   }
 };

@@ -47,8 +47,25 @@ struct TotalLagrangian final : Physics {
       "Strength of the control of modes that alternate between particles, over the shear modulus; "
       "0: none.",
       non_negative, default_to(0.5)};
+  Param<Choice> average_volume{"average_volume", nullptr,
+                               "Whether the volumetric part of the energy takes the mean volume ratio of a "
+                               "neighbourhood, which keeps the "
+                               "pressure of nearly incompressible materials smooth; automatic: where the "
+                               "bulk modulus is more than ten times the "
+                               "shear modulus (Poisson's ratio above 0.452).",
+                               one_of("automatic", "always", "never"), default_to("automatic")};
   Param<double> damping{"damping", "1/s", "Damping of the velocity in proportion to mass, to come to rest.",
                         non_negative, default_to(0.0)};
+  Param<double> viscosity{"viscosity", "Pa s", "Viscosity of the material (Kelvin-Voigt).", non_negative,
+                          default_to(0.0)};
+  Param<double> artificial_viscosity{
+      "artificial_viscosity",
+      "1",
+      "Damping between neighbours in proportion to the wave speed, against noise of "
+      "impacts; 0.02 removes a checkerboard.",
+      non_negative,
+      default_to(0.0),
+      example("0.02")};
   Param<double> step_factor{
       "step_factor", "1",          "Time step over the largest stable one of the undeformed body.",
       positive,      at_most(1.0), default_to(0.8)};
