@@ -10,8 +10,10 @@
 // iteration on the undeformed body, and scaled by the speed of waves where the law says that it stiffens.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <vector>
 
@@ -51,10 +53,9 @@ struct Kick : ParticleOperator<Kick> {
   }
 };
 
-// How fast waves are on top of the deformation, for laws that stiffen: looked at every few steps, since it costs about
-// ten times the stress; the step keeps a fifth in hand for what happens between.
+// How fast waves are on top of the deformation, for laws that stiffen. It costs about ten times the stress, so it is
+// looked at the more seldom the less it changes: the step keeps a fifth in hand for what happens between.
 struct WaveSpeed : ParticleOperator<WaveSpeed> {
-  static constexpr std::uint64_t interval = 10;  // steps
   In<Matrix> F{"deformation_gradient"};
   Maximum speed;
   DeclaredFields law_fields{*this};
@@ -62,7 +63,7 @@ struct WaveSpeed : ParticleOperator<WaveSpeed> {
 
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {
-    if (step().number % interval != 0) return;
+    if (step().number < state_.next) return;
     std::array<double*, DeclaredFields::most> fields;
     law_fields.at(chunk.begin, fields.data());
     const shoal_stress_block block =
@@ -72,14 +73,28 @@ struct WaveSpeed : ParticleOperator<WaveSpeed> {
     for (const double one : speeds) speed.update(Particle<D>{0, chunk.partial}, one);
   }
   void end() {
-    if (step().number % interval == 0) structure->wave_speed = speed.result();
+    if (step().number < state_.next) return;
+    const double change = std::fabs(speed.result() / structure->wave_speed - 1.0);
+    if (change < 0.01)
+      state_.interval = std::min<std::uint64_t>(2 * state_.interval, 80);
+    else if (!(change < 0.04))
+      state_.interval = std::max<std::uint64_t>(state_.interval / 2, 5);
+    state_.next = step().number + state_.interval;
+    state_.speed = structure->wave_speed = speed.result();
   }
   void save(const shoal_stream& stream) const {
-    check_host(stream.write(stream.context, &structure->wave_speed, sizeof(double)));
+    check_host(stream.write(stream.context, &state_, sizeof state_));
   }
   void load(const shoal_stream& stream) {
-    check_host(stream.read(stream.context, &structure->wave_speed, sizeof(double)));
+    check_host(stream.read(stream.context, &state_, sizeof state_));
+    structure->wave_speed = state_.speed;
   }
+
+ private:
+  struct State {
+    std::uint64_t next = 0, interval = 5;  // steps
+    double speed = 0;                      // m/s
+  } state_;
 };
 
 // The largest step; looks at no particle but once.

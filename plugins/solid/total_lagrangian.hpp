@@ -46,7 +46,7 @@ struct TotalLagrangian final : Physics {
       "hourglass", "1",
       "Strength of the control of modes that alternate between particles, over the shear modulus; "
       "0: none.",
-      non_negative, default_to(0.5)};
+      non_negative, default_to(5.0)};
   Param<Choice> average_volume{"average_volume", nullptr,
                                "Whether the volumetric part of the energy takes the mean volume ratio of a "
                                "neighbourhood, which keeps the "
