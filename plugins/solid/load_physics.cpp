@@ -11,10 +11,13 @@ namespace shoal::solid {
 
 void Traction::build(const Builder& b) {
   declare_loop(b);
+  if (traction.is_set() == force.is_set())
+    throw CaseError("solid.traction needs either a traction or a force");
   for (const BodyIndex body : bodies.value())
     b.attach<TractionLoad>("solid.traction", at_forces, b.target(body), [&](auto& op) {
       op.loaded.region = region_of(where, within, b.dimensions());
-      op.traction = traction.value();
+      op.total = force.is_set();
+      op.traction = op.total ? force.value() : traction.value();
     });
 }
 

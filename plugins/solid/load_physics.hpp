@@ -26,9 +26,14 @@ struct Traction final : RegionPhysics {
   Param<VectorExpression> traction{
       "traction", "Pa",
       "Force per reference area as expressions of the reference position and t; its "
-      "direction stays. It acts on the face of the region's mean normal, so the region is "
-      "the particles within the support (2.3 spacings) of one flat face.",
-      example("[0, \"1e5*min(t, 1)\"]")};
+      "direction stays. It acts on the face of the region's mean normal: the region is the "
+      "particles within 5 spacings of one flat face whose neighbours stand at right angles.",
+      optional, example("[0, \"1e5*min(t, 1)\"]")};
+  Param<VectorExpression> force{
+      "force", "N",
+      "Instead, the force on the whole region, spread over its surface; per metre of depth in "
+      "two dimensions. Right where neighbouring faces are slanted.",
+      optional, example("[0, 100]")};
   void build(const Builder& builder);
 };
 

@@ -14,8 +14,9 @@ void TractionLoad::begin() {
     for (std::size_t a = 0; a < d; ++a) value_[a].assign(n_particles(), 0.0);
     for (const std::uint64_t i : loaded.particles())
       for (std::size_t a = 0; a < d; ++a) normal_[a] += area.data()[i * d + a];
-    const double length = std::hypot(normal_[0], normal_[1], normal_[2]);
-    for (double& component : normal_) component /= length;
+    face_ = std::hypot(normal_[0], normal_[1], normal_[2]);
+    if (!(face_ > 0.0)) throw CaseError("the region of the traction holds no surface");
+    for (double& component : normal_) component /= face_;
   }
   for (std::size_t a = 0; a < d; ++a)
     loaded.evaluate(traction.component[a], dimensions(), time() + 0.5 * dt(), value_[a]);

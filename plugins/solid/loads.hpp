@@ -53,7 +53,8 @@ struct TractionLoad : ParticleOperator<TractionLoad> {
   Accumulate<Vector> acceleration{"acceleration"};
 
   RegionValues loaded;
-  VectorExpression traction;
+  VectorExpression traction;  // Pa; or N where `total`
+  bool total = false;         // the face takes this force, in proportion to area
 
   void begin();
   void particle(auto i) const {
@@ -67,6 +68,7 @@ struct TractionLoad : ParticleOperator<TractionLoad> {
 
  private:
   Vector3 normal_{};
+  double face_ = 0;  // area, m2
   std::array<std::vector<double>, 3> value_;
 };
 
