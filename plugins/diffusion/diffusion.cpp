@@ -117,6 +117,7 @@ class OneField {
   }
 
  private:
+  bool conservative() const { return physics_.scheme.value() == "conservative"; }
   bool moving() const { return physics_.inside.is_set(); }
 
   void attach_conductivity(std::size_t k) const { attach_conductivity(bodies_[k].index, media_[k]); }
@@ -135,7 +136,14 @@ class OneField {
     for (std::size_t other = 0; other < bodies_.size(); ++other)
       if (other != k) neighbours.push_back(bodies_[other].index);
     for (const BodyOfMedium& wall : walls_) neighbours.push_back(wall.index);
-    return b_.target(bodies_[k].index, neighbours);
+    Target target = b_.target(bodies_[k].index, neighbours);
+    // Pairs are antisymmetric only if both bodies see them with one smoothing length.
+    if (conservative())
+      for (const BodyOfMedium& other : bodies_) {
+        target.smoothing_length = std::max(target.smoothing_length, b_.body(other.index).smoothing_length);
+        target.cutoff = std::max(target.cutoff, b_.body(other.index).cutoff);
+      }
+    return target;
   }
 
   Integrator integrator() const {
@@ -167,7 +175,7 @@ class OneField {
     for (std::size_t other = 0; other < bodies_.size(); ++other)
       if (other != k) stencil->motions.push_back(bodies_[other].motion);
     for (const BodyOfMedium& wall : walls_) stencil->motions.push_back(wall.motion);
-    if (physics_.scheme.value() == "conservative")
+    if (conservative())
       attach_weights<PairwiseWeights>(k, stencil);
     else
       attach_weights<FitWeights>(k, stencil);
@@ -191,7 +199,9 @@ class OneField {
 
   template <class Weights>
   void attach_weights(std::size_t k, const std::shared_ptr<Stencil>& stencil) const {
-    for (const At at : {at_start, at_before})
+    for (const At at : {at_start, at_before}) {
+      if (conservative() && physics_.gradient_correction && (moving() || at.loop == at_start.loop))
+        b_.attach<GradientCorrection>("diffusion.correction", at, target_of(k));
       b_.attach<Weights>("diffusion.weights", at, target_of(k), [&](auto& op) {
         op.set(field_, isotropic_, stencil);
         op.capacity = bodies_[k].medium->capacity();
@@ -201,15 +211,21 @@ class OneField {
         op.first_wall = bodies_.size();
         op.moving = moving();
         if (has_surface()) op.set_surface(field_, conditions_);
+        if (conservative()) {
+          for (const BodyOfMedium& other : bodies_)
+            op.lattice_spacing = std::max(op.lattice_spacing, b_.body(other.index).spacing);
+          if (physics_.gradient_correction) op.correct_gradient();
+        }
         if constexpr (std::is_same_v<Weights, FitWeights>)
           op.monotone = physics_.scheme.value() == "monotone";
       });
+    }
   }
 
   // Whether surface points are looked at: those of bodies at rest, and of walls.
   bool has_surface() const {
     if (moving()) return !walls_.empty();
-    return physics_.scheme.value() != "conservative" || !conditions_.empty();
+    return !conservative() || !conditions_.empty();
   }
 
   // A wall needs a coefficient, for the means of pairs, and its surface points.
@@ -279,6 +295,10 @@ void Diffusion::build(const Builder& b) {
         b.attach<WatchMotion>("diffusion.watch", at, b.target(body.index),
                               [&](auto& op) { op.motion = body.motion; });
   const std::vector<Condition> conditions = conditions_of(*this, b.dimensions());
+  if (gradient_correction && (!conditions.empty() || scheme.value() != "conservative"))
+    throw CaseError(
+        gradient_correction.place() +
+        ": gradient_correction is for scheme: conservative without boundaries; scheme: accurate needs none");
   for (std::size_t k = 0; k < fields->size(); ++k)
     OneField(b, *this, with_media, kept, conditions, fields.value()[k].name, k).attach();
 }

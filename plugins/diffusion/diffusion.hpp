@@ -39,6 +39,11 @@ struct Diffusion final : Physics {
       "accurate where no weight is negative, else with some diffusion added, so that no new extrema come "
       "into being.",
       one_of("accurate", "conservative", "monotone"), default_to("accurate")};
+  Param<bool> gradient_correction{"gradient_correction", nullptr,
+                                  "Whether the conservative scheme corrects the gradient of the smoothing "
+                                  "kernel: errors in insulated bodies are a "
+                                  "third. Not with 'boundaries'.",
+                                  default_to(false)};
   Param<std::vector<ObjectHandle>> boundaries{
       "boundaries",
       nullptr,

@@ -16,7 +16,8 @@ namespace {
 constexpr double dx = 0.1, h = 0.13;
 
 // The weights and then the rate of field c of `own`, of itself and `others`.
-void rate(Body& own, std::vector<Body*> bodies, bool isotropic, double capacity, bool scalar) {
+void rate(Body& own, std::vector<Body*> bodies, bool isotropic, double capacity, bool scalar,
+          bool corrected = false) {
   const auto stencil = std::make_shared<Stencil>();
   for (std::size_t k = 0; k < bodies.size(); ++k) stencil->motions.push_back(std::make_shared<Motion>());
   for (Body* body : bodies) body->set("volume", std::pow(dx, own.dimensions()));
@@ -24,6 +25,7 @@ void rate(Body& own, std::vector<Body*> bodies, bool isotropic, double capacity,
   PairwiseWeights weights;
   weights.set("c", isotropic, stencil);
   weights.capacity = capacity;
+  if (corrected) weights.correct_gradient();
   const Setup setup{.smoothing_length = h, .spacing = dx, .scalar = scalar};
   testing::run(weights, own, bodies, setup);
   ApplyStencil apply;
@@ -99,5 +101,64 @@ TEST_CASE("on a lattice the second derivatives of any tensor are exact, and cont
     }
     CHECK(inside > 0);
     CHECK(std::abs(total) < 1e-9);
+  }
+}
+
+TEST_CASE(
+    "what two bodies exchange is kept, whatever their capacities, with correction of the gradient too") {
+  for (const bool corrected : {false, true}) {
+    Body left(2, lattice(2, dx, 8, 0.2)), right(2, lattice(2, dx, 8, 0.2));
+    for (std::size_t i = 0; i < right.size(); ++i) right["position"][2 * i] += 8 * dx;
+    left.set_each("c", 1, [](std::size_t i, std::size_t) { return std::sin(static_cast<double>(i)); });
+    right.set_each("c", 1, [](std::size_t i, std::size_t) { return 3.0 + std::cos(static_cast<double>(i)); });
+    left.set("c_conductivity", 1.0);
+    right.set("c_conductivity", 50.0);
+    double total = 0, size = 0;
+    const double capacities[2] = {4.0, 0.5};
+    if (corrected)
+      for (auto [own, other] : {std::pair{&left, &right}, {&right, &left}}) {
+        own->set("volume", dx * dx);
+        other->set("volume", dx * dx);
+        GradientCorrection correction;
+        testing::run(correction, *own, {own, other}, {.smoothing_length = h, .spacing = dx});
+      }
+    for (const int side : {0, 1}) {
+      Body& own = side == 0 ? left : right;
+      Body& other = side == 0 ? right : left;
+      own["c_rate"].clear();
+      rate(own, {&own, &other}, true, capacities[side], false, corrected);
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        total += capacities[side] * own["c_rate"][i];
+        size += capacities[side] * std::abs(own["c_rate"][i]);
+      }
+    }
+    CHECK(std::abs(total) < 1e-12 * size);
+  }
+}
+
+TEST_CASE("the correction of the gradient is the inverse of its first moments") {
+  for (const int d : {2, 3}) {
+    Body body(d, lattice(d, dx, 6, 0.25));
+    body.set("volume", std::pow(dx, d));
+    GradientCorrection op;
+    testing::run(op, body, {&body}, {.smoothing_length = h, .spacing = dx});
+    const auto n = static_cast<std::size_t>(d);
+    for (std::size_t i = 0; i < body.size(); ++i) {
+      std::vector<double> moments(n * n);
+      for (std::size_t j = 0; j < body.size(); ++j) {
+        if (i == j) continue;
+        const auto x = difference(body, i, body, j);
+        for (std::size_t a = 0; a < n; ++a)
+          for (std::size_t b = 0; b < n; ++b)
+            moments[a * n + b] -= std::pow(dx, d) * plain_dw(d, h, length(x)) / length(x) * x[a] * x[b];
+      }
+      for (std::size_t a = 0; a < n; ++a)
+        for (std::size_t b = 0; b < n; ++b) {
+          double product = 0;
+          for (std::size_t c = 0; c < n; ++c)
+            product += moments[a * n + c] * body["gradient_correction"][i * n * n + c * n + b];
+          CHECK(product == doctest::Approx(a == b ? 1.0 : 0.0).epsilon(1e-10));
+        }
+    }
   }
 }

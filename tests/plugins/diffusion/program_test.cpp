@@ -113,6 +113,42 @@ TEST_CASE("a plan holds what the case asks for, and no more") {
     CHECK_MESSAGE(contains(all, part), part);
 }
 
+TEST_CASE("several species at once are each as if they were alone; a tensor may come from a field") {
+  const std::string both = "    initial:\n      a: \"exp(-50*(x-0.4)^2)\"\n      b: \"cos(3*y)\"\n";
+  const auto run = [&](const std::string& fields, const std::string& medium, const std::string& initial) {
+    std::string text = plate("      fields: " + fields + "\n      integrator: rk2\n", medium,
+                             "probes:\n  a: {sum: {of: a^2, body: plate}, every: 1 s}\n"
+                             "  b: {sum: {of: b^2, body: plate}, every: 1 s}\n");
+    const std::size_t at = text.find("    initial:"), end = text.find("physics:");
+    text.replace(at, end - at, initial);
+    if (!contains(fields, "a"))
+      text.replace(text.find("  a: {sum"), text.find("  b: {sum") - text.find("  a: {sum"), "");
+    if (!contains(fields, "b")) text.erase(text.find("  b: {sum"));
+    write("species.yaml", text);
+    const Result result =
+        app_test::shoal({"run", "species.yaml", "-o", "species", "--force", "--set", "resolution=0.05"});
+    INFO(result.err);
+    REQUIRE(result.code == 0);
+  };
+  const auto last = [](const char* probe) {
+    return rows(std::string("species/probes/") + probe + ".csv").back();
+  };
+  run("[a, b]", "diffusion.medium: {diffusivity: [1, 0.5]}", both);
+  const auto a = last("a"), b = last("b");
+  // Alone the step is that of the species, which differs for the slower one.
+  run("[a]", "diffusion.medium: {diffusivity: 1}", "    initial: {a: \"exp(-50*(x-0.4)^2)\"}\n");
+  CHECK(last("a") == a);
+  run("[b, a]", "diffusion.medium: {diffusivity: [0.5, 1]}", both);
+  CHECK(last("b") == b);
+
+  run("[a, b]", "diffusion.medium: {diffusivity: 1, tensor: [1, 0.2, 0.5]}", both);
+  const auto by_numbers = last("a");
+  run("[a, b]", "diffusion.medium: {diffusivity: 1, tensor_field: fibre_tensor}",
+      both + "      fibre_tensor: [1, 0.2, 0.2, 0.5]\n");
+  CHECK(last("a") == by_numbers);
+  CHECK(by_numbers != a);
+}
+
 TEST_CASE("what cannot be is refused with the place and what to do") {
   const std::string medium = "diffusion.medium: {diffusivity: 1}";
   CHECK(contains(error_of(plate("", "diffusion.medium: {diffusivity: 1, tensor: [1, 0]}")),
@@ -130,6 +166,9 @@ TEST_CASE("what cannot be is refused with the place and what to do") {
                  "conditions at surfaces stand under 'boundaries' of diffusion.diffusion"));
   CHECK(contains(error_of(plate("      inside: advection\n", medium)),
                  "expected loop/stage, e.g. advection/forces, got 'advection'"));
+  CHECK(contains(
+      error_of(plate("      gradient_correction: true\n", medium)),
+      "gradient_correction is for scheme: conservative without boundaries; scheme: accurate needs none"));
   write("negative.yaml", plate("", "diffusion.medium: {diffusivity: x - 0.5}"));
   const Result negative = app_test::shoal({"run", "negative.yaml", "-o", "negative", "--force"});
   CHECK(negative.code == 2);
