@@ -62,6 +62,7 @@ struct TractionLoad : ParticleOperator<TractionLoad> {
     double along = 0;
     for (int a = 0; a < decltype(i)::dimensions; ++a)
       along += area[i][a] * normal_[static_cast<std::size_t>(a)];
+    if (total) along /= face_;
     for (int a = 0; a < decltype(i)::dimensions; ++a)
       acceleration[i][a] += along / mass[i] * value_[static_cast<std::size_t>(a)][i.index];
   }
