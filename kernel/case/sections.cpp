@@ -164,7 +164,8 @@ const shoal_type& probe_table() {
 }
 
 const shoal_type& reference_table() {
-  static const std::vector<const char*> measures{"rms", "relative_rms", "max", "peak", "final"};
+  static const std::vector<const char*> measures{"rms",   "relative_rms", "max",     "peak",
+                                                 "final", "mean",         "arrival", "period"};
   static const std::vector<shoal_parameter> rows{
       row(SHOAL_TEXT, "probe", nullptr, required, nullptr, "Name of the probe that is compared.", "front"),
       row(SHOAL_TEXT, "column", nullptr, 0, nullptr, "Column of the probe; its first without this key.",
@@ -182,14 +183,17 @@ const shoal_type& reference_table() {
       row(SHOAL_REAL, "value_scale", nullptr, 0, "1", "Factor from the values of the data to SI units.",
           "1000"),
       row(SHOAL_REAL, "value_shift", nullptr, 0, "0", "Added to the values of the data, in SI units.", "0"),
-      with_choices(row(SHOAL_CHOICE, "error", nullptr, 0, "rms",
-                       "rms: root of the mean square difference over the largest value; relative_rms: over "
-                       "the root of "
-                       "the mean square value; max: largest difference over the largest value; peak: "
-                       "difference of the "
-                       "largest values; final: difference at the last time.",
-                       "max"),
-                   measures),
+      with_choices(
+          row(SHOAL_CHOICE, "error", nullptr, 0, "rms",
+              "rms: root of the mean square difference over the largest value; relative_rms: over "
+              "the root of "
+              "the mean square value; max: largest difference over the largest value; peak: "
+              "difference of the "
+              "largest values; final: difference at the last time; mean: mean magnitude of the difference; "
+              "arrival: of the times at which half the reference's largest value is reached; period: of "
+              "the mean times between rises through the mean.",
+              "max"),
+          measures),
       row(SHOAL_REAL, "tolerance", "1", required | positive, nullptr,
           "Largest error with which the case passes.", "5 %"),
       row(SHOAL_REAL, "scale", nullptr, positive, nullptr,

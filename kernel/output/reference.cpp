@@ -15,7 +15,8 @@ namespace shoal::kernel {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array<std::string_view, 5> measure_names{"rms", "relative_rms", "max", "peak", "final"};
+constexpr std::array<std::string_view, 8> measure_names{"rms",   "relative_rms", "max",     "peak",
+                                                        "final", "mean",         "arrival", "period"};
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
@@ -105,6 +106,13 @@ double difference(ErrorMeasure measure, const Pairs& pairs) {
     case ErrorMeasure::peak:
       return std::abs(*std::max_element(pairs.sampled.begin(), pairs.sampled.end()) -
                       *std::max_element(pairs.reference.begin(), pairs.reference.end()));
+    case ErrorMeasure::mean: {
+      double sum = 0.0;
+      for (const double value : differences) sum += std::abs(value);
+      return sum / static_cast<double>(differences.size());
+    }
+    case ErrorMeasure::arrival:
+    case ErrorMeasure::period: return std::abs(differences.front());
     case ErrorMeasure::rms:
     case ErrorMeasure::relative_rms: break;
   }
@@ -138,6 +146,59 @@ Pairs peak_pairs(const ReferenceSpecification& specification, const Series& samp
     for (const double value : known.values) pairs.reference.push_back(value);
     pairs.sampled.assign(known.values.size(), peak);
   }
+  return pairs;
+}
+
+// Of the samples within the window.
+Series within(const ReferenceSpecification& specification, const Series& series) {
+  Series part;
+  for (std::size_t k = 0; k < series.times.size(); ++k) {
+    if (!in_window(specification, series.times[k]) || std::isnan(series.values[k])) continue;
+    part.times.push_back(series.times[k]);
+    part.values.push_back(series.values[k]);
+  }
+  return part;
+}
+
+// Times at which the series rises through a level, linear between samples.
+std::vector<double> rises(const Series& series, double level) {
+  std::vector<double> times;
+  for (std::size_t k = 1; k < series.times.size(); ++k) {
+    const double a = series.values[k - 1] - level, b = series.values[k] - level;
+    if (a < 0.0 && b >= 0.0)
+      times.push_back(series.times[k - 1] + (series.times[k] - series.times[k - 1]) * (-a / (b - a)));
+  }
+  return times;
+}
+
+// Mean over time, by trapezoids: samples need not be evenly spaced.
+double time_mean(const Series& series) {
+  double sum = 0.0;
+  for (std::size_t k = 1; k < series.times.size(); ++k)
+    sum += 0.5 * (series.values[k] + series.values[k - 1]) * (series.times[k] - series.times[k - 1]);
+  return sum / (series.times.back() - series.times.front());
+}
+
+// The one number of a series that `arrival` or `period` compare; nothing if it has none.
+std::optional<double> time_of(ErrorMeasure measure, const Series& series, double level) {
+  if (measure == ErrorMeasure::arrival) {
+    if (!series.values.empty() && series.values.front() >= level) return series.times.front();
+    const std::vector<double> times = rises(series, level);
+    return times.empty() ? std::nullopt : std::optional(times.front());
+  }
+  if (series.times.size() < 2) return std::nullopt;
+  const std::vector<double> times = rises(series, time_mean(series));
+  if (times.size() < 2) return std::nullopt;
+  return (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+}
+
+Pairs time_pairs(const ReferenceSpecification& specification, const Series& sampled, const Series& known) {
+  Pairs pairs;
+  if (known.values.empty()) return pairs;
+  const double level = 0.5 * *std::max_element(known.values.begin(), known.values.end());
+  const auto got = time_of(specification.measure, within(specification, sampled), level);
+  const auto wanted = time_of(specification.measure, known, level);
+  if (got && wanted) pairs.add(*got, *wanted);
   return pairs;
 }
 
@@ -196,6 +257,9 @@ ReferenceResult compare(const ReferenceSpecification& specification, const Serie
   Pairs pairs;
   if (specification.measure == ErrorMeasure::peak) {
     pairs = peak_pairs(specification, sampled, known);
+  } else if (specification.measure == ErrorMeasure::arrival ||
+             specification.measure == ErrorMeasure::period) {
+    pairs = time_pairs(specification, sampled, known);
   } else {
     for (std::size_t k = 0; k < known.times.size(); ++k)
       pairs.add(value_at(sampled, known.times[k]), known.values[k]);

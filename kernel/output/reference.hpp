@@ -22,10 +22,13 @@ enum class ErrorMeasure {
   relative_rms,  ///< root of the mean square difference, over the root of the mean square of the reference
   max,           ///< largest difference, over the largest |reference|
   peak,          ///< difference of the largest values, over the largest |reference|
-  last           ///< difference at the last point of the reference, over the |reference| there ("final")
+  last,          ///< difference at the last point of the reference, over the |reference| there ("final")
+  mean,          ///< mean of the magnitudes of the differences, over the largest |reference|
+  arrival,  ///< of the times of the first rise through half the reference's largest value, over the reference's
+  period    ///< of the mean times between rises through the series' means, over the reference's
 };
 
-/// rms, relative_rms, max, peak, final.
+/// rms, relative_rms, max, peak, final, mean, arrival, period.
 std::optional<ErrorMeasure> error_measure(std::string_view name);
 std::string_view name_of(ErrorMeasure measure);
 

@@ -8,7 +8,8 @@
 //                                                          density of the continuity equation is kept
 // so that errors of the continuity equation do not add up over many steps. The paper takes rho_f in each step. On
 // disordered particles rho_s has a noise of some 0.2 %, of which rho_f keeps the upper half: densities and with them
-// the mean pressure rise. Here rho_i is only kept within a tolerance of rho_f, 1 % by default.
+// the mean pressure rise, and each correction sends out a sound wave. Here rho_i is kept within a tolerance of rho_f
+// (1 % by default), and of what is beyond only a share is taken back in each step (5 % by default).
 #pragma once
 
 #include <algorithm>
@@ -35,7 +36,8 @@ struct DensitySum : PairOperator<Derived> {
   double reference_density = 0;  // kg/m3
   double per_lattice_sum = 0;    // 1 / sigma0, m^D
   bool free_surface = true;
-  double tolerance = 0;  // kg/m3
+  double tolerance = 0;   // kg/m3
+  double relaxation = 1;  // share of what is beyond the tolerance
 
   auto pair(const auto& p) const { return p.W(); }
 
@@ -46,7 +48,8 @@ struct DensitySum : PairOperator<Derived> {
         reference_density * per_lattice_sum * (sum + this->self_W() + wall_sum / rest_volume);
     const double excess =
         free_surface ? std::max(0.0, density[i] - summed) * reference_density / density[i] : 0.0;
-    density[i] = std::clamp(density[i], summed + excess - tolerance, summed + excess + tolerance);
+    const double kept = std::clamp(density[i], summed + excess - tolerance, summed + excess + tolerance);
+    density[i] += relaxation * (kept - density[i]);
     volume[i] = mass[i] / density[i];
   }
 };

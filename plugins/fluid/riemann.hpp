@@ -10,10 +10,13 @@
 // neighbours. The terms are gathered where their fields are read anyway: those of the pressure (P* without beta, and
 // its jump in v*) in PressureForce, those of the velocity in VelocityDivergence.
 //
-// The pressure jump dissipates what gravity balances, too: at a free surface sum_j V_j (p_i - p_j) W' of a
-// hydrostatic field is not zero, and the density drifts. What the acceleration a by everything but pressure explains
-// of the jump, rho0 a.r_ij, is therefore taken off (compare the density diffusion of Fourtakas et al. 2019), but never
-// more than the jump itself: water in free fall has the acceleration without the pressure.
+// The jump of a smooth pressure is no discontinuity: sum_j V_j (p_i - p_j) W' of it acts as a source of volume, by
+// order h laplace(p) / (rho c) in the interior and more at free surfaces, where it lets the density of water at rest
+// drift. What gradients explain of the jump is therefore taken off (as density diffusion does: Antuono et al. 2010,
+// Fourtakas et al. 2019),
+//   p_i - p_j - minmod(p_i - p_j, (grad p_i + grad p_j)/2 . r_ij),    grad p = -rho0 a_p
+// a_p being the acceleration by pressure in the last acoustic step, walls included: no sum of its own is needed, and
+// water at rest and in free fall are both exact.
 #pragma once
 
 #include "shoal/pair_operator.hpp"
@@ -31,10 +34,12 @@ struct PressureForce : PairOperator<PressureForce> {
   In<Scalar> pressure{"pressure"};
   In<Scalar> volume{"volume"};
   In<Scalar> density{"density", own_only};
-  In<Vector> acceleration{"acceleration", own_only};
+  In<Vector> last_acceleration{"last_pressure_acceleration", unit("m/s2"),
+                               doc("Acceleration by pressure in the last acoustic step.")};
   InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"),
                                       doc("Acceleration by pressure.")};
-  Out<Scalar> density_rate{"density_rate", unit("kg/m3/s"), doc("Rate of change of the density.")};
+  Out<Scalar> density_diffusion{"density_diffusion", unit("kg/m3/s"),
+                                doc("Rate of the density by dissipation of pressure jumps.")};
 
   double reference_density = 0;  // kg/m3
   double sound_speed = 0;        // m/s
@@ -42,14 +47,15 @@ struct PressureForce : PairOperator<PressureForce> {
 
   auto pair(const auto& p) const {
     const auto weight = p.j(volume) * p.dW_over_r();
-    const auto hydrostatic = reference_density * dot(p.i(acceleration), p.r_ij());
     const auto jump = p.i(pressure) - p.j(pressure);
+    const auto smooth =
+        (-0.5 * reference_density) * dot(p.i(last_acceleration) + p.j(last_acceleration), p.r_ij());
     return sums((weight * (p.i(pressure) + p.j(pressure))) * p.r_ij(),
-                weight * p.r() * (jump - minmod(jump, hydrostatic)));
+                weight * p.r() * (jump - minmod(jump, smooth)));
   }
   void particle(auto i, auto force, auto dissipation) const {
     pressure_acceleration[i] -= (gradient_scale / density[i]) * force;
-    density_rate[i] = (gradient_scale / sound_speed) * dissipation;
+    density_diffusion[i] = (gradient_scale / sound_speed) * dissipation;
   }
 };
 
@@ -59,7 +65,8 @@ struct VelocityDivergence : PairOperator<VelocityDivergence> {
   In<Scalar> volume{"volume"};
   In<Scalar> density{"density", own_only};
   Out<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"), doc("Acceleration by pressure.")};
-  InOut<Scalar> density_rate{"density_rate", unit("kg/m3/s"), doc("Rate of change of the density.")};
+  Out<Scalar> compression{"compression_rate", unit("kg/m3/s"),
+                          doc("Rate of the density by convergence of the velocity.")};
 
   double sound_speed = 0;     // m/s
   double limiter = 3.0;       // eta of the paper
@@ -74,7 +81,7 @@ struct VelocityDivergence : PairOperator<VelocityDivergence> {
     return sums(weight * v_r, (weight * beta * jump) * p.r_ij());
   }
   void particle(auto i, auto divergence, auto dissipation) const {
-    density_rate[i] += gradient_scale * density[i] * divergence;
+    compression[i] = gradient_scale * density[i] * divergence;
     pressure_acceleration[i] = (-gradient_scale * sound_speed) * dissipation;
   }
 };

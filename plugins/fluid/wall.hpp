@@ -65,7 +65,8 @@ struct WallVelocityDivergence : PairOperator<WallVelocityDivergence> {
   In<Scalar> wall_volume{"volume", neighbours_only};
   InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"),
                                       doc("Acceleration by pressure.")};
-  InOut<Scalar> density_rate{"density_rate", unit("kg/m3/s"), doc("Rate of change of the density.")};
+  InOut<Scalar> compression{"compression_rate", unit("kg/m3/s"),
+                            doc("Rate of the density by convergence of the velocity.")};
 
   double sound_speed = 0;  // m/s
   double limiter = 3.0;
@@ -80,7 +81,7 @@ struct WallVelocityDivergence : PairOperator<WallVelocityDivergence> {
     return sums(weight * v_n * dot(n, p.r_ij()), (weight * p.r() * beta * approach) * n);
   }
   void particle(auto i, auto divergence, auto dissipation) const {
-    density_rate[i] += gradient_scale * density[i] * divergence;
+    compression[i] += gradient_scale * density[i] * divergence;
     pressure_acceleration[i] -= gradient_scale * sound_speed * dissipation;
   }
 };

@@ -11,6 +11,7 @@
 #include "lattice.hpp"
 #include "liquid.hpp"
 #include "riemann.hpp"
+#include "velocity_filter.hpp"
 #include "viscosity.hpp"
 #include "wall.hpp"
 
@@ -19,6 +20,7 @@ namespace {
 
 constexpr At at_shift{"advection", "shift"};
 constexpr At at_density{"advection", "density"};
+constexpr At at_filter{"advection", "filter"};
 constexpr At at_forces{"advection", "forces"};
 constexpr At at_acoustic{"advection", "acoustic"};
 constexpr At at_predict{"acoustic", "predict"};
@@ -83,6 +85,7 @@ struct FluidBody {
       op.reference_density = density;
       op.per_lattice_sum = 1.0 / lattice.w;
       op.free_surface = physics.free_surface;
+      op.relaxation = physics.free_surface ? physics.summation_relaxation : 1.0;
       op.tolerance = physics.free_surface ? physics.summation_tolerance * density : 0.0;
     };
     if (has_walls()) {
@@ -91,6 +94,16 @@ struct FluidBody {
     } else {
       b.attach<DensityReinitialisation>("fluid.density", at_density, target, setup);
     }
+  }
+
+  void attach_filter() const {
+    const double strength = physics.velocity_filter.value_or(physics.free_surface ? 0.3 : 0.0);
+    if (strength == 0.0) return;
+    b.attach<VelocityFluctuation>("fluid.velocity_fluctuation", at_filter, itself());
+    b.attach<VelocityFilter>("fluid.velocity_filter", at_filter, itself(), [&](auto& op) {
+      op.strength = strength;
+      op.reference_density = density;
+    });
   }
 
   void attach_forces() const {
@@ -121,6 +134,7 @@ struct FluidBody {
       op.equation_of_state = equation_of_state;
       op.sound_speed = sound_speed;
       op.cfl = physics.acoustic_cfl;
+      op.damping = physics.acoustic_damping;
     });
     b.attach<PressureForce>("fluid.pressure_force", at_momentum, itself(), [&](auto& op) {
       op.reference_density = density;
@@ -185,7 +199,7 @@ double expected_speed(const Wcsph& physics, const Builder& b) {
 }  // namespace
 
 void Wcsph::build(const Builder& b) {
-  b.loop("advection", {"shift", "density", "forces", "acoustic"});
+  b.loop("advection", {"shift", "density", "filter", "forces", "acoustic"});
   b.loop("acoustic", at_acoustic, {"predict", "momentum", "kick", "continuity"});
   b.renew_neighbours_in("advection");
 
@@ -212,6 +226,7 @@ void Wcsph::build(const Builder& b) {
     fluid.attach_initial();
     fluid.attach_shift();
     fluid.attach_density();
+    fluid.attach_filter();
     fluid.attach_forces();
     fluid.attach_acoustic();
     fluid.attach_wall_forces();

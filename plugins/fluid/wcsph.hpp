@@ -5,6 +5,7 @@
 //
 //   loop advection    shift      particles spread evenly (no free surface)
 //                     density    re-initialised by summation
+//                     filter     velocities of particles that jitter about the flow
 //                     forces     gravity, viscosity, and what other plugins add to `acceleration`
 //                     acoustic
 //     loop acoustic   predict    half a step of density and position, pressure
@@ -42,10 +43,26 @@ struct Wcsph final : Physics {
       default_to(true)};
   Param<double> summation_tolerance{
       "summation_tolerance", "1",
-      "With a free surface the density may differ by this part from that of the summation. The noise of the "
-      "summation "
-      "only ever raises densities there: with 0 the plateau of the pressure in the 2D dam break is 22 % off.",
+      "With a free surface the density may differ by this part from that of the summation, whose noise only "
+      "ever raises densities there; of what is beyond, a share is taken back in each advection step.",
       non_negative, default_to(0.01)};
+  Param<double> summation_relaxation{
+      "summation_relaxation", "1",
+      "That share. With 1 each correction sends a sound wave through the fluid: in the 2D dam break the "
+      "pressure's noise is three times that with 0.05.",
+      between(0.0, 1.0), default_to(0.05)};
+  Param<double> acoustic_damping{"acoustic_damping", "1",
+                                 "Bulk viscosity over rho c h, which damps sound and leaves incompressible "
+                                 "flow alone. Stable below 1.5.",
+                                 non_negative, default_to(0.5)};
+  Param<double> velocity_filter{"velocity_filter",
+                                "1",
+                                "Strength of the filter that damps what particles do beyond the smooth flow "
+                                "around them; 0: none. Without "
+                                "it 0.3 with a free surface, else 0. Stable below 0.8.",
+                                between(0.0, 0.8),
+                                optional,
+                                example("0.3")};
   Param<double> advection_cfl{"advection_cfl", "1", "Advection step over h / |v|.", positive,
                               default_to(0.25)};
   Param<double> acoustic_cfl{"acoustic_cfl", "1", "Acoustic step over h / (c + |v|).", positive,

@@ -55,7 +55,9 @@ TEST_CASE("a dam break: interrupted or not, on one thread or two, bitwise the sa
 }
 
 TEST_CASE("the force on the tank is what changes the momentum of the water") {
-  // Newton's third law over the run: p(t) = g m t - int F dt, up to the sum over the steps at which the force is sampled.
+  // Newton's third law over the run: p(t) = g m t - int F dt, up to the sum over the steps at which the force is
+  // sampled, at the end of each. Corrections of the density at the beginning of steps send sound through the water; if
+  // they were sudden, the force of each would be over before it is sampled, and the error would not converge.
   std::string text = dam.substr(0, dam.find("probes:")) +
                      "probes:\n"
                      "  momentum: {sum: {of: [mass*velocity.x, mass*velocity.y], body: water}, every: 1 us}\n"
@@ -78,7 +80,8 @@ TEST_CASE("the force on the tank is what changes the momentum of the water") {
     MESSAGE(std::string(dx) << ": momentum and impulse differ by " << errors.back()
                             << " of the weight's impulse");
   }
-  for (const double error : errors) CHECK(error < 5e-3);
+  CHECK(errors[0] < 2e-3);
+  CHECK(errors[1] < 0.5 * errors[0]);
 }
 
 TEST_CASE("without viscosity there is no viscous operator; the force on the tank is computed on demand") {

@@ -121,6 +121,35 @@ TEST_CASE("point interpolates with Shepard's normalisation") {
   CHECK(first("point", "moving")[0] == doctest::Approx(0.3).epsilon(1e-12));
 }
 
+TEST_CASE("a point with a diameter is the mean over a disc, in 2D over chords") {
+  const Result result = run_once("disc", grains(R"(probes:
+  gauge: {point: {of: velocity.y, at: [1, 1], body: pile, diameter: 0.4, normal: [2, 0]}, every: 1 ms}
+  half: {point: {of: "1", at: [1, 0], body: pile, diameter: 6, normal: [1, 0], empty: 0}, every: 1 ms}
+  rest: {point: {of: "1", at: [1, 0], body: pile, diameter: 6, normal: [1, 0]}, every: 1 ms}
+  dry: {point: {of: velocity.x, at: [4, 1], body: pile, empty: 7}, every: 1 ms}
+)"));
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const std::vector<Grain> pile = lattice();
+  double sum = 0, weights = 0, wet = 0, all = 0;
+  for (int k = 0; k < 10; ++k) {
+    const double s = (k + 0.5) / 5.0 - 1.0, chord = std::sqrt(1.0 - s * s);
+    sum += chord * shepard(pile, 1.0, 1.0 + 0.2 * s, [](const Grain& grain) { return 0.3 * grain.y; });
+    weights += chord;
+    all += chord;
+    if (k == 6 || k == 7) wet += chord;  // y = 0.9 and 1.5 in a pile from 0.5 to 1.5
+  }
+  CHECK(first("disc", "gauge")[0] == doctest::Approx(sum / weights).epsilon(1e-12));
+  CHECK(first("disc", "half")[0] == doctest::Approx(wet / all).epsilon(1e-12));
+  CHECK(first("disc", "rest")[0] == doctest::Approx(1.0).epsilon(1e-12));
+  CHECK(first("disc", "dry")[0] == 7.0);
+  write("case.yaml", grains("probes:\n  gauge: {point: {of: velocity.y, at: [1, 1], body: pile, diameter: "
+                            "0.4}, every: 1 ms}\n"));
+  const Result wrong = shoal({"run", "case.yaml", "-o", "wrong", "--force"});
+  CHECK(wrong.code == 2);
+  CHECK(contains(wrong.err, "the disc of probe 'gauge' needs its axis, e.g. normal: [1, 0]"));
+}
+
 TEST_CASE("point sees through periodic and mirror faces") {
   std::string text = grains(R"(domain: {lower: [0, 0.5], upper: [2, 1.5], periodic: [x], mirror: [lower_y]}
 probes:

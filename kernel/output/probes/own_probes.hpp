@@ -46,6 +46,18 @@ struct PointParameters : Parameterised {
       between(0, 1),
       default_to(0.05),
       example("0.25")};
+  Param<double> diameter{"diameter",
+                         "m",
+                         "With it the mean over a disc of this size about the point, as a gauge in a wall "
+                         "measures it; in 2D the disc's chords are weighed.",
+                         positive,
+                         optional,
+                         example("90 mm")};
+  Param<Vector3> normal{"normal", "1", "Axis of the disc.", optional, example("[1, 0]")};
+  Param<double> empty{"empty", "1",
+                      "Value where there are too few particles, e.g. 0 for the pressure on the dry part of a "
+                      "gauge; without it NaN, and of a disc only the rest counts.",
+                      optional, example("0")};
   Param<std::string> unit{"unit", nullptr, "Unit of the result, for the head of the table.", optional,
                           example("m/s")};
 };

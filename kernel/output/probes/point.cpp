@@ -6,7 +6,7 @@
 //   f(x) = sum_j V_j f_j W(|x - x_j|) / sum_j V_j W(|x - x_j|)
 //
 // which is exact for constant fields also where particles are on one side only, as at a wall or a free surface.
-// V_j is the field `volume`, else mass / density, else spacing^dimensions.
+// V_j is the field `volume`, else mass / density, else spacing^dimensions. A gauge is the mean over a disc.
 #include <tbb/parallel_for.h>
 
 #include <cmath>
@@ -17,6 +17,7 @@
 #include "kernel/case/scalars.hpp"
 #include "kernel/output/particle_expression.hpp"
 #include "kernel/output/probes/own_probes.hpp"
+#include "kernel/particles/errors.hpp"
 #include "kernel/plugins/host.hpp"
 #include "shoal/smoothing_kernel.hpp"
 
@@ -58,6 +59,38 @@ std::vector<Image> images_of(const Domain& domain) {
   return images;
 }
 
+// Where a value is taken, from the probe's point, and its share.
+struct Spot {
+  Place offset{};
+  double weight = 1.0;
+};
+
+Place cross(const Place& a, const Place& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+// A disc across `normal` in equal cells, of which those count whose middle is in it; in 2D its diameter, each place
+// with the length of the chord there.
+std::vector<Spot> disc(const Place& normal, double diameter, int dimensions) {
+  constexpr int n = 10;
+  const double length = std::hypot(normal[0], normal[1], normal[2]);
+  const Place axis{normal[0] / length, normal[1] / length, normal[2] / length};
+  const Place off = std::abs(axis[2]) < 0.5 ? Place{0.0, 0.0, 1.0} : Place{1.0, 0.0, 0.0};
+  const Place b = cross(axis, off);
+  const double b_length = std::hypot(b[0], b[1], b[2]);
+  const Place t{b[0] / b_length, b[1] / b_length, b[2] / b_length}, u = cross(axis, t);
+  std::vector<Spot> spots;
+  for (int k = 0; k < n; ++k)
+    for (int m = 0; m < (dimensions == 3 ? n : 1); ++m) {
+      const double x = (2.0 * k + 1.0) / n - 1.0, y = dimensions == 3 ? (2.0 * m + 1.0) / n - 1.0 : 0.0;
+      if (x * x + y * y > 1.0) continue;
+      Spot spot{{}, dimensions == 3 ? 1.0 : std::sqrt(1.0 - x * x)};
+      for (std::size_t a = 0; a < 3; ++a) spot.offset[a] = 0.5 * diameter * (x * t[a] + y * u[a]);
+      spots.push_back(spot);
+    }
+  return spots;
+}
+
 struct BodyOfProbe {
   std::uint32_t index;
   double spacing, smoothing_length, cutoff;
@@ -69,6 +102,7 @@ class Point final : public Probe {
   Point(const shoal_object& object, const ProbeContext& context)
       : name_(context.name), dimensions_(context.dimensions), images_(images_of(context.domain)) {
     parameters_.read(object, context.dimensions);
+    read_disc();
     for (const std::string& text : parameters_.of.value())
       of_.emplace_back(text, context.parameters, context.dimensions, parameters_.of.place());
     for (const BodyIndex index : parameters_.body.value()) {
@@ -101,28 +135,37 @@ class Point final : public Probe {
   std::vector<Column> columns() const override { return columns_; }
 
   std::vector<double> sample(const Simulation& run) override {
-    const Place at = point(run.time());
+    const Place centre = point(run.time());
+    const double reach = parameters_.diameter.is_set() ? 0.5 * parameters_.diameter : 0.0;
+    const std::vector<Near> near = this->near(run, centre, reach);
     std::vector<double> sums(of_.size(), 0.0);
     double total = 0.0;
-    for (const BodyOfProbe& body : bodies_) {
-      const std::vector<ParticleImage> near = neighbours(run, body, at);
-      const std::vector<double> weights = this->weights(run, body, near, at);
-      for (const double weight : weights) total += weight;
-      for (std::size_t k = 0; k < of_.size(); ++k) {
-        const std::vector<double> values = of_[k].evaluate(run, body.index, near);
-        for (std::size_t j = 0; j < near.size(); ++j) sums[k] += weights[j] * values[j];
-      }
+    for (const Spot& spot : spots_) {
+      const Place at{centre[0] + spot.offset[0], centre[1] + spot.offset[1], centre[2] + spot.offset[2]};
+      std::vector<double> values = interpolate(near, at);
+      if (values.empty() && parameters_.empty.is_set())
+        values.assign(of_.size(), static_cast<double>(parameters_.empty));
+      if (values.empty()) continue;
+      total += spot.weight;
+      for (std::size_t k = 0; k < of_.size(); ++k) sums[k] += spot.weight * values[k];
     }
-    if (total > 0.0 && total >= parameters_.support) {
-      for (double& sum : sums) sum /= total;
-    } else {
-      warn_once(run.time());
-      for (double& sum : sums) sum = std::numeric_limits<double>::quiet_NaN();
-    }
+    if (total == 0.0) warn_once(run.time());
+    for (double& sum : sums) sum = total > 0.0 ? sum / total : std::numeric_limits<double>::quiet_NaN();
     return sums;
   }
 
  private:
+  void read_disc() {
+    if (!parameters_.diameter.is_set()) {
+      spots_ = {Spot{}};
+      return;
+    }
+    if (!parameters_.normal.is_set() || parameters_.normal.value() == Place{})
+      throw ModelError("the disc of probe '" + name_ + "' needs its axis, e.g. normal: [1, 0]",
+                       parameters_.diameter.place());
+    spots_ = disc(parameters_.normal, parameters_.diameter, dimensions_);
+  }
+
   Place point(double time) const {
     const Place origin{};
     Place at{};
@@ -131,9 +174,51 @@ class Point final : public Probe {
     return at;
   }
 
+  // Particles of one body near the point, with their volumes and values.
+  struct Near {
+    const BodyOfProbe* body;
+    std::vector<ParticleImage> particles;
+    std::vector<double> volumes;
+    std::vector<std::vector<double>> values;  // of each expression
+  };
+
+  std::vector<Near> near(const Simulation& run, const Place& centre, double reach) {
+    std::vector<Near> all;
+    for (const BodyOfProbe& body : bodies_) {
+      Near near{&body, neighbours(run, body, centre, body.cutoff + reach), {}, {}};
+      near.volumes = volumes(run, body, near.particles);
+      for (const ParticleExpression& expression : of_)
+        near.values.push_back(expression.evaluate(run, body.index, near.particles));
+      all.push_back(std::move(near));
+    }
+    return all;
+  }
+
+  // Nothing where there are too few particles.
+  std::vector<double> interpolate(const std::vector<Near>& near, const Place& at) const {
+    std::vector<double> sums(of_.size(), 0.0);
+    double total = 0.0;
+    for (const Near& body : near)
+      for (std::size_t j = 0; j < body.particles.size(); ++j) {
+        const double weight = body.volumes[j] * w(*body.body, body.particles[j].position, at);
+        total += weight;
+        for (std::size_t k = 0; k < of_.size(); ++k) sums[k] += weight * body.values[k][j];
+      }
+    if (!(total > 0.0 && total >= parameters_.support)) return {};
+    for (double& sum : sums) sum /= total;
+    return sums;
+  }
+
+  double w(const BodyOfProbe& body, const Place& a, const Place& b) const {
+    const double r = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    const auto value = [&](const auto& kernel) { return kernel.w(r); };
+    return dimensions_ == 2 ? with_kernel<2>(body.kernel, body.smoothing_length, value)
+                            : with_kernel<3>(body.kernel, body.smoothing_length, value);
+  }
+
   // In the order of particles, then of images.
-  std::vector<ParticleImage> neighbours(const Simulation& run, const BodyOfProbe& body,
-                                        const Place& at) const {
+  std::vector<ParticleImage> neighbours(const Simulation& run, const BodyOfProbe& body, const Place& at,
+                                        double radius) const {
     const auto* positions = static_cast<const double*>(run.field(body.index, "position").data);
     const auto dimensions = static_cast<std::size_t>(dimensions_);
     const std::uint64_t n = run.n_particles(body.index);
@@ -147,7 +232,7 @@ class Point final : public Probe {
             place[k] = image.sign[k] * positions[i * dimensions + k] + image.shift[k];
             squared += (place[k] - at[k]) * (place[k] - at[k]);
           }
-          if (squared < body.cutoff * body.cutoff) found[c].push_back({i, place, image.sign});
+          if (squared < radius * radius) found[c].push_back({i, place, image.sign});
         }
       }
     });
@@ -156,8 +241,8 @@ class Point final : public Probe {
     return all;
   }
 
-  std::vector<double> weights(const Simulation& run, const BodyOfProbe& body,
-                              const std::vector<ParticleImage>& near, const Place& at) const {
+  std::vector<double> volumes(const Simulation& run, const BodyOfProbe& body,
+                              const std::vector<ParticleImage>& near) const {
     const auto scalar = [&](const char* name) -> const double* {
       const std::optional<FieldInfo> info = run.field_info(body.index, name);
       return info && info->rank == SHOAL_SCALAR ? static_cast<const double*>(run.field(body.index, name).data)
@@ -165,17 +250,12 @@ class Point final : public Probe {
     };
     const double *volume = scalar("volume"), *mass = scalar("mass"), *density = scalar("density");
     const double lattice = std::pow(body.spacing, dimensions_);
-    std::vector<double> weights;
-    for (const ParticleImage& j : near) {
-      const double v = volume != nullptr                       ? volume[j.index]
-                       : mass != nullptr && density != nullptr ? mass[j.index] / density[j.index]
-                                                               : lattice;
-      const double r = std::hypot(j.position[0] - at[0], j.position[1] - at[1], j.position[2] - at[2]);
-      const auto w = [&](const auto& kernel) { return kernel.w(r); };
-      weights.push_back(v * (dimensions_ == 2 ? with_kernel<2>(body.kernel, body.smoothing_length, w)
-                                              : with_kernel<3>(body.kernel, body.smoothing_length, w)));
-    }
-    return weights;
+    std::vector<double> all;
+    for (const ParticleImage& j : near)
+      all.push_back(volume != nullptr                       ? volume[j.index]
+                    : mass != nullptr && density != nullptr ? mass[j.index] / density[j.index]
+                                                            : lattice);
+    return all;
   }
 
   void warn_once(double time) {
@@ -188,6 +268,7 @@ class Point final : public Probe {
   int dimensions_;
   std::vector<Image> images_;
   PointParameters parameters_;
+  std::vector<Spot> spots_;
   std::vector<ParticleExpression> of_;
   std::vector<BodyOfProbe> bodies_;
   std::vector<Column> columns_;

@@ -41,15 +41,45 @@ TEST_CASE("errors between samples are linear, and ratios") {
   CHECK(error(ErrorMeasure::last) == doctest::Approx(0.3));
   // The peak is that of all samples, 8, not of those at the reference's times.
   CHECK(error(ErrorMeasure::peak) == doctest::Approx(0.2));
+  CHECK(error(ErrorMeasure::mean) == doctest::Approx((1.0 + 0.0 + 3.0) / 3.0 / 10.0));
   ReferenceSpecification absolute = against(data, ErrorMeasure::max);
   absolute.scale = 1.0;
   CHECK(compare(absolute, line, true).error == doctest::Approx(3.0));
 }
 
+TEST_CASE("arrival: when half of the reference's largest value is first reached") {
+  // Half of the largest value is 5, which 2 t reaches at 2.5.
+  CHECK(compare(against("0,0\n2,4\n3,6\n4,10\n", ErrorMeasure::arrival), line, true).error ==
+        doctest::Approx(0.0).scale(1.0));
+  CHECK(compare(against("0,0\n1,0\n2,10\n4,0\n", ErrorMeasure::arrival), line, true).error ==
+        doctest::Approx((2.5 - 1.5) / 1.5));
+  const ReferenceResult never = compare(against("0,0\n4,80\n", ErrorMeasure::arrival), line, true);
+  CHECK(std::isnan(never.error));
+  CHECK(never.verdict == Verdict::fail);
+}
+
+TEST_CASE("period: the mean time between rises through the mean") {
+  const auto wave = [](double period, double offset) {
+    Series series;
+    for (int k = 0; k <= 1000; ++k) {
+      const double t = 0.01 * k;
+      series.times.push_back(t);
+      series.values.push_back(offset + std::sin(2.0 * 3.14159265358979 * (t - 0.1) / period));
+    }
+    return series;
+  };
+  ReferenceSpecification specification;
+  specification.measure = ErrorMeasure::period;
+  specification.exact = [&](double t) { return std::cos(2.0 * 3.14159265358979 * t / 2.0); };
+  CHECK(compare(specification, wave(2.0, 5.0), true).error < 1e-4);
+  CHECK(compare(specification, wave(1.9, -5.0), true).error == doctest::Approx(0.05).epsilon(0.01));
+  CHECK(std::isnan(compare(specification, wave(30.0, 0.0), true).error));
+}
+
 TEST_CASE("names of measures") {
   CHECK(error_measure("final") == ErrorMeasure::last);
   CHECK(error_measure("relative_rms") == ErrorMeasure::relative_rms);
-  CHECK_FALSE(error_measure("mean"));
+  CHECK_FALSE(error_measure("average"));
   CHECK(name_of(ErrorMeasure::last) == "final");
 }
 

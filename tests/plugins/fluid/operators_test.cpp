@@ -165,7 +165,8 @@ TEST_CASE("the acoustic step is position-based Verlet") {
   Body water(2, {0.1, 0.2});
   water.set("mass", 2.5);
   water["density"] = {1001.0};
-  water["density_rate"] = {100.0};
+  water["compression_rate"] = {60.0};
+  water["density_diffusion"] = {40.0};
   water["velocity"] = {1.0, -2.0};
   water["acceleration"] = {0.0, -10.0};
   water["pressure_acceleration"] = {5.0, 0.0};
@@ -173,9 +174,10 @@ TEST_CASE("the acoustic step is position-based Verlet") {
   AcousticPredictor predict;
   predict.equation_of_state = eos;
   predict.sound_speed = 20.0;
+  predict.damping = 0.25;
   testing::run(predict, water, {}, step);
   CHECK(water["density"][0] == doctest::Approx(1001.5).epsilon(1e-14));
-  CHECK(water["pressure"][0] == doctest::Approx(400.0 * 1.5).epsilon(1e-12));
+  CHECK(water["pressure"][0] == doctest::Approx(400.0 * 1.5 + 0.25 * 20.0 * h * 60.0).epsilon(1e-12));
   CHECK(water["volume"][0] == doctest::Approx(2.5 / 1001.5).epsilon(1e-14));
   CHECK(water["position"][0] == doctest::Approx(0.105).epsilon(1e-14));
   CHECK(predict.time_step_of(Particle<2>{0, nullptr}) == doctest::Approx(0.6 * h / (20.0 + std::sqrt(5.0))));

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A filter of the velocity, once in an advection step. The limiter of the Riemann solver (riemann.hpp) leaves slow flow
+// without dissipation, and particles that jitter about a smooth flow, even one at rest, never calm down. The filter
+// takes away what differs from a linear flow over the neighbourhood,
+//   v'_i = v_i - [mean + gradient (r_i - centre)],     least squares over i and its neighbours, weights V_j W_ij
+//   dv_i = C h (rho0/rho_i) sum_j V_j [(v'_i - v'_j).e_ij] e_ij W'_ij
+// Linear flow, rotation among it, passes untouched, at free surfaces and walls too; a smooth flow changes by
+// C h^4 d^4 v / dx^4 only. Momentum and angular momentum are kept to rounding: what pairs exchange is opposite and
+// central. The fastest mode shrinks by 1 - 2.33 C in 2D and 1 - 2 C in 3D in each step: stable for C < 0.85.
+#pragma once
+
+#include "shoal/pair_operator.hpp"
+
+namespace shoal::fluid {
+
+// v'. Where neighbours do not span the space, e.g. in a spray, the gradient is damped towards zero.
+struct VelocityFluctuation : PairOperator<VelocityFluctuation> {
+  In<Vector> velocity{"velocity"};
+  In<Scalar> volume{"volume"};
+  Out<Vector> fluctuation{"velocity_fluctuation", unit("m/s"),
+                          doc("Velocity less the linear flow over the neighbourhood."), derived};
+
+  auto pair(const auto& p) const {
+    const auto w = p.j(volume) * p.W();
+    const auto r = (1.0 / p.h()) * p.r_ij();
+    const auto v = p.i(velocity) - p.j(velocity);
+    return sums(w, w * r, w * v, outer(w * r, r), outer(w * v, r));
+  }
+  template <int D>
+  void particle(Particle<D> i, double weight, Vec<D> r, Vec<D> v, Mat<D> rr, Mat<D> vr) const {
+    const double scale = 1.0 / (weight + volume[i] * self_w_);
+    const Vec<D> mean_r = scale * r, mean_v = scale * v;
+    Mat<D> moment = scale * rr - outer(mean_r, mean_r);
+    for (int a = 0; a < D; ++a) moment(a, a) += 1e-6;
+    const Mat<D> gradient = (scale * vr - outer(mean_v, mean_r)) * inverse(moment);
+    fluctuation[i] = mean_v - gradient * mean_r;
+  }
+  void begin() { self_w_ = self_W(); }
+
+ private:
+  double self_w_ = 0;
+};
+
+struct VelocityFilter : PairOperator<VelocityFilter> {
+  static constexpr bool skips_lonely = true;
+
+  In<Vector> fluctuation{"velocity_fluctuation", unit("m/s"),
+                         doc("Velocity less the linear flow over the neighbourhood."), derived};
+  In<Scalar> volume{"volume"};
+  In<Scalar> density{"density", own_only};
+  InOut<Vector> velocity{"velocity"};
+
+  double strength = 0;           // C
+  double reference_density = 0;  // kg/m3
+
+  auto pair(const auto& p) const {
+    const auto along = dot(p.i(fluctuation) - p.j(fluctuation), p.r_ij());
+    return (p.j(volume) * p.dW_over_r() / p.r() * along) * p.r_ij();
+  }
+  void particle(auto i, auto sum) const {
+    velocity[i] += (strength * smoothing_length() * reference_density / density[i]) * sum;
+  }
+};
+
+}  // namespace shoal::fluid
