@@ -21,6 +21,8 @@
 
 #include "shoal/pair_operator.hpp"
 
+#include "gradient_matrix.hpp"
+
 namespace shoal::fluid {
 
 // The smaller of two numbers of one sign, 0 if their signs differ.
@@ -30,7 +32,8 @@ auto minmod(const A& a, const B& b) {
 }
 
 // The pressure's part: acceleration, and the dissipation of pressure jumps in the continuity equation.
-struct PressureForce : PairOperator<PressureForce> {
+template <bool Corrected>
+struct PressureForceOf : PairOperator<PressureForceOf<Corrected>> {
   In<Scalar> pressure{"pressure"};
   In<Scalar> volume{"volume"};
   In<Scalar> density{"density", own_only};
@@ -38,6 +41,7 @@ struct PressureForce : PairOperator<PressureForce> {
                                doc("Acceleration by pressure in the last acoustic step.")};
   InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"),
                                       doc("Acceleration by pressure.")};
+  MatrixIf<Corrected> matrix{"pressure_matrix", unit("1"), doc("Correction of gradients.")};
   Out<Scalar> density_diffusion{"density_diffusion", unit("kg/m3/s"),
                                 doc("Rate of the density by dissipation of pressure jumps.")};
 
@@ -50,20 +54,29 @@ struct PressureForce : PairOperator<PressureForce> {
     const auto jump = p.i(pressure) - p.j(pressure);
     const auto smooth =
         (-0.5 * reference_density) * dot(p.i(last_acceleration) + p.j(last_acceleration), p.r_ij());
-    return sums((weight * (p.i(pressure) + p.j(pressure))) * p.r_ij(),
-                weight * p.r() * (jump - minmod(jump, smooth)));
+    const auto dissipation = weight * p.r() * (jump - minmod(jump, smooth));
+    if constexpr (Corrected)
+      return sums(
+          weight * (p.i(pressure) * (p.j(matrix) * p.r_ij()) + p.j(pressure) * (p.i(matrix) * p.r_ij())),
+          dissipation);
+    else
+      return sums((weight * (p.i(pressure) + p.j(pressure))) * p.r_ij(), dissipation);
   }
   void particle(auto i, auto force, auto dissipation) const {
-    pressure_acceleration[i] -= (gradient_scale / density[i]) * force;
+    pressure_acceleration[i] -= ((Corrected ? 1.0 : gradient_scale) / density[i]) * force;
     density_diffusion[i] = (gradient_scale / sound_speed) * dissipation;
   }
 };
 
+using PressureForce = PressureForceOf<false>;
+
 // The velocity's part: divergence, and the dissipation of approaching velocities, kept for the next PressureForce.
-struct VelocityDivergence : PairOperator<VelocityDivergence> {
+template <bool Corrected>
+struct VelocityDivergenceOf : PairOperator<VelocityDivergenceOf<Corrected>> {
   In<Vector> velocity{"velocity"};
   In<Scalar> volume{"volume"};
   In<Scalar> density{"density", own_only};
+  MatrixIf<Corrected> matrix{"gradient_matrix", own_only, unit("1"), doc("Correction of gradients.")};
   Out<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"), doc("Acceleration by pressure.")};
   Out<Scalar> compression{"compression_rate", unit("kg/m3/s"),
                           doc("Rate of the density by convergence of the velocity.")};
@@ -75,15 +88,22 @@ struct VelocityDivergence : PairOperator<VelocityDivergence> {
 
   auto pair(const auto& p) const {
     const auto weight = p.j(volume) * p.dW_over_r();
-    const auto v_r = dot(p.i(velocity) - p.j(velocity), p.r_ij());
+    const auto v = p.i(velocity) - p.j(velocity);
+    const auto v_r = dot(v, p.r_ij());
     const auto jump = -v_r * p.per_r();  // u_L - u_R
     const auto beta = min(1.0, max(least, (limiter / sound_speed) * jump));
-    return sums(weight * v_r, (weight * beta * jump) * p.r_ij());
+    const auto dissipation = (weight * beta * jump) * p.r_ij();
+    if constexpr (Corrected)
+      return sums(weight * dot(v, p.i(matrix) * p.r_ij()), dissipation);
+    else
+      return sums(weight * v_r, dissipation);
   }
   void particle(auto i, auto divergence, auto dissipation) const {
-    compression[i] = gradient_scale * density[i] * divergence;
+    compression[i] = (Corrected ? 1.0 : gradient_scale) * density[i] * divergence;
     pressure_acceleration[i] = (-gradient_scale * sound_speed) * dissipation;
   }
 };
+
+using VelocityDivergence = VelocityDivergenceOf<false>;
 
 }  // namespace shoal::fluid

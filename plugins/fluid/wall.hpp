@@ -13,6 +13,7 @@
 
 #include "shoal/pair_operator.hpp"
 
+#include "gradient_matrix.hpp"
 #include "viscosity.hpp"
 
 namespace shoal::fluid {
@@ -32,12 +33,14 @@ auto wall_pressure(double rho, const P& fluid_pressure, const A& acceleration, c
 }
 
 // The walls' share of PressureForce. Runs after it.
-struct WallPressureForce : PairOperator<WallPressureForce> {
+template <bool Corrected>
+struct WallPressureForceOf : PairOperator<WallPressureForceOf<Corrected>> {
   static constexpr bool skips_lonely = true;
 
   In<Scalar> pressure{"pressure", own_only};
   In<Scalar> density{"density", own_only};
   In<Vector> acceleration{"acceleration", own_only};
+  MatrixIf<Corrected> matrix{"pressure_matrix", own_only, unit("1"), doc("Correction of gradients.")};
   In<Scalar> wall_volume{"volume", neighbours_only};
   InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"),
                                       doc("Acceleration by pressure.")};
@@ -47,21 +50,29 @@ struct WallPressureForce : PairOperator<WallPressureForce> {
 
   auto pair(const auto& p) const {
     const auto p_w = wall_pressure(reference_density, p.i(pressure), p.i(acceleration), -p.r_ij());
-    return (p.j(wall_volume) * p.dW_over_r() * (p.i(pressure) + p_w)) * p.r_ij();
+    const auto weight = p.j(wall_volume) * p.dW_over_r() * (p.i(pressure) + p_w);
+    if constexpr (Corrected)
+      return weight * (p.i(matrix) * p.r_ij());
+    else
+      return weight * p.r_ij();
   }
   void particle(auto i, auto force) const {
-    pressure_acceleration[i] -= (gradient_scale / density[i]) * force;
+    pressure_acceleration[i] -= ((Corrected ? 1.0 : gradient_scale) / density[i]) * force;
   }
 };
 
+using WallPressureForce = WallPressureForceOf<false>;
+
 // The walls' share of VelocityDivergence. Runs after it.
-struct WallVelocityDivergence : PairOperator<WallVelocityDivergence> {
+template <bool Corrected>
+struct WallVelocityDivergenceOf : PairOperator<WallVelocityDivergenceOf<Corrected>> {
   static constexpr bool skips_lonely = true;
 
   In<Vector> velocity{"velocity", own_only};
   In<Scalar> density{"density", own_only};
   In<Vector> wall_velocity{"velocity", neighbours_only};
   In<Vector> wall_normal{"normal", neighbours_only};
+  MatrixIf<Corrected> matrix{"gradient_matrix", own_only, unit("1"), doc("Correction of gradients.")};
   In<Scalar> wall_volume{"volume", neighbours_only};
   InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"),
                                       doc("Acceleration by pressure.")};
@@ -78,13 +89,19 @@ struct WallVelocityDivergence : PairOperator<WallVelocityDivergence> {
     const auto v_n = 2.0 * dot(p.i(velocity) - p.j(wall_velocity), n);  // (v_i - v_w').n
     const auto approach = max(0.0, -v_n);
     const auto beta = min(1.0, (limiter / sound_speed) * approach);
-    return sums(weight * v_n * dot(n, p.r_ij()), (weight * p.r() * beta * approach) * n);
+    const auto dissipation = (weight * p.r() * beta * approach) * n;
+    if constexpr (Corrected)
+      return sums(weight * v_n * dot(n, p.i(matrix) * p.r_ij()), dissipation);
+    else
+      return sums(weight * v_n * dot(n, p.r_ij()), dissipation);
   }
   void particle(auto i, auto divergence, auto dissipation) const {
-    compression[i] += gradient_scale * density[i] * divergence;
+    compression[i] += (Corrected ? 1.0 : gradient_scale) * density[i] * divergence;
     pressure_acceleration[i] -= gradient_scale * sound_speed * dissipation;
   }
 };
+
+using WallVelocityDivergence = WallVelocityDivergenceOf<false>;
 
 // Force of the fluid on each wall particle, in N: the opposite of what the walls do to the fluid. On demand.
 // Here i is the wall's particle and j the fluid's.

@@ -8,6 +8,7 @@
 #include "acoustic_step.hpp"
 #include "advection_step.hpp"
 #include "density.hpp"
+#include "gradient_matrix.hpp"
 #include "lattice.hpp"
 #include "liquid.hpp"
 #include "riemann.hpp"
@@ -96,6 +97,13 @@ struct FluidBody {
     }
   }
 
+  void attach_gradients() const {
+    b.attach<GradientMoment>("fluid.gradient_moment", at_filter, itself());
+    if (has_walls()) b.attach<WallGradientMoment>("fluid.gradient_moment.walls", at_filter, and_walls());
+    b.attach<GradientMatrix>("fluid.gradient_matrix", at_filter, itself(),
+                             [&](auto& op) { op.slope = lattice.slope; });
+  }
+
   void attach_filter() const {
     const double strength = physics.velocity_filter.value_or(physics.free_surface ? 0.3 : 0.0);
     if (strength == 0.0) return;
@@ -129,6 +137,7 @@ struct FluidBody {
                                  });
   }
 
+  template <bool Corrected>
   void attach_acoustic() const {
     b.attach<AcousticPredictor>("fluid.predict", at_predict, itself(), [&](auto& op) {
       op.equation_of_state = equation_of_state;
@@ -136,28 +145,30 @@ struct FluidBody {
       op.cfl = physics.acoustic_cfl;
       op.damping = physics.acoustic_damping;
     });
-    b.attach<PressureForce>("fluid.pressure_force", at_momentum, itself(), [&](auto& op) {
+    b.attach<PressureForceOf<Corrected>>("fluid.pressure_force", at_momentum, itself(), [&](auto& op) {
       op.reference_density = density;
       op.sound_speed = sound_speed;
       op.gradient_scale = 1.0 / lattice.slope;
     });
     if (has_walls())
-      b.attach<WallPressureForce>("fluid.pressure_force.walls", at_momentum, and_walls(), [&](auto& op) {
-        op.reference_density = density;
-        op.gradient_scale = 1.0 / lattice.slope;
-      });
+      b.attach<WallPressureForceOf<Corrected>>("fluid.pressure_force.walls", at_momentum, and_walls(),
+                                               [&](auto& op) {
+                                                 op.reference_density = density;
+                                                 op.gradient_scale = 1.0 / lattice.slope;
+                                               });
     b.attach<Kick>("fluid.kick", at_kick, itself());
     const auto riemann = [&](auto& op) {
       op.sound_speed = sound_speed;
       op.limiter = physics.dissipation_limiter;
       op.gradient_scale = 1.0 / lattice.slope;
     };
-    b.attach<VelocityDivergence>("fluid.divergence", at_continuity, itself(), [&](auto& op) {
+    b.attach<VelocityDivergenceOf<Corrected>>("fluid.divergence", at_continuity, itself(), [&](auto& op) {
       riemann(op);
       op.least = physics.least_dissipation;
     });
     if (has_walls())
-      b.attach<WallVelocityDivergence>("fluid.divergence.walls", at_continuity, and_walls(), riemann);
+      b.attach<WallVelocityDivergenceOf<Corrected>>("fluid.divergence.walls", at_continuity, and_walls(),
+                                                    riemann);
     b.attach<DensityCorrector>("fluid.correct_density", at_continuity, itself());
   }
 
@@ -226,9 +237,10 @@ void Wcsph::build(const Builder& b) {
     fluid.attach_initial();
     fluid.attach_shift();
     fluid.attach_density();
+    if (gradient_correction) fluid.attach_gradients();
     fluid.attach_filter();
     fluid.attach_forces();
-    fluid.attach_acoustic();
+    gradient_correction ? fluid.attach_acoustic<true>() : fluid.attach_acoustic<false>();
     fluid.attach_wall_forces();
   }
 }

@@ -63,6 +63,9 @@ struct Wcsph final : Physics {
                                 between(0.0, 0.8),
                                 optional,
                                 example("0.3")};
+  Param<bool> gradient_correction{"gradient_correction", nullptr,
+                                  "Whether pressure and divergence use corrected gradients.",
+                                  default_to(false)};
   Param<double> advection_cfl{"advection_cfl", "1", "Advection step over h / |v|.", positive,
                               default_to(0.25)};
   Param<double> acoustic_cfl{"acoustic_cfl", "1", "Acoustic step over h / (c + |v|).", positive,
