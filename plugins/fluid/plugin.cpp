@@ -1,11 +1,8 @@
 // SPDX-FileCopyrightText: The Shoal authors
 // SPDX-License-Identifier: Apache-2.0
 #include "shoal/plugin.hpp"
-<<<<<<< HEAD
-#include "least_squares/physics.hpp"
-=======
 #include "body_force.hpp"
->>>>>>> 733bb08 (Correct gradients of pressure and divergence on request; move walls along a path)
+#include "least_squares/physics.hpp"
 #include "liquid.hpp"
 #include "wall_motion.hpp"
 #include "wcsph.hpp"
@@ -25,18 +22,15 @@ SHOAL_PLUGIN(fluid, "0.1.0") {
              "sloshing, "
              "impacts, and internal flows at moderate Mach number.",
              "Zhang, Rezavand, Hu 2020");
-<<<<<<< HEAD
   add<LeastSquares>(
       "fluid.least_squares",
       "Incompressible flow without a free surface, second-order accurate: derivatives by a quadratic "
       "least-squares fit, pressure by a wave equation. Take it for vortices, mixing and decay, where "
       "fluid.wcsph wants ten times the particles for the same error.",
       "Negi, Ramachandran 2022, doi:10.1016/j.cma.2022.114738");
-=======
   add<WallMotion>(
       "fluid.wall_motion",
       "Walls that move along a given path: translation and rotation as expressions of time or from a "
       "table. Take it for wave makers, rolling tanks and stirrers.");
   add<BodyForcePhysics>("fluid.body_force", "An acceleration given by expressions of place and time.");
->>>>>>> 733bb08 (Correct gradients of pressure and divergence on request; move walls along a path)
 }
