@@ -8,8 +8,8 @@
 // the pure strain for a compression (measured: the elliptic drop grows by 14 %).
 // The force of pressure uses the matrices of both particles crosswise (Zhang, Zhu, Hu 2025),
 //   dv_i/dt = -(1/rho_i) sum_j V_j (p_i B_j + p_j B_i) grad W_ij,
-// which keeps momentum. Without it the deformed lattice bears shear like a solid of modulus 0.1 p: a standing wave is 4 %
-// too fast at any resolution. Near free surfaces, where p is small and B large, it goes over to that of the lattice.
+// which keeps momentum. Without it the deformed lattice bears shear like a soft solid, and a standing wave is 4 % too fast
+// (measured with depth / dx = 50). Near free surfaces, where p is small and B large, it goes over to that of the lattice.
 // Where neighbours do not span the space, as in a spray, B goes over to that of the lattice of the initial spacing.
 #pragma once
 
