@@ -57,7 +57,7 @@ struct VelocityFilter : PairOperator<VelocityFilter> {
 
   auto pair(const auto& p) const {
     const auto along = dot(p.i(fluctuation) - p.j(fluctuation), p.r_ij());
-    return (p.j(volume) * p.dW_over_r() / p.r() * along) * p.r_ij();
+    return (p.j(volume) * p.dW_over_r() * p.per_r() * along) * p.r_ij();
   }
   void particle(auto i, auto sum) const {
     velocity[i] += (strength * smoothing_length() * reference_density / density[i]) * sum;
