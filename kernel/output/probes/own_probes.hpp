@@ -55,7 +55,7 @@ struct PointParameters : Parameterised {
                          example("90 mm")};
   Param<Vector3> normal{"normal", "1", "Axis of the disc.", optional, example("[1, 0]")};
   Param<double> empty{"empty", "1",
-                      "Value where there are too few particles, e.g. 0 for the pressure on the dry part of a "
+                      "Value where there are too few particles, e.g. 0 for the load on the dry part of a "
                       "gauge; without it NaN, and of a disc only the rest counts.",
                       optional, example("0")};
   Param<std::string> unit{"unit", nullptr, "Unit of the result, for the head of the table.", optional,
