@@ -100,6 +100,7 @@ class OneField {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       const BodyIndex body = bodies_[k].index;
       b_.own_field(body, rate_of(field_).c_str(), at_rate);
+      b_.guard(body, field_.c_str(), -HUGE_VAL, HUGE_VAL);  // NaN stops the run
       attach_stencil(k, at_rate);
       attach_source(k, at_rate);
       const auto setup = [&](auto& op) {

@@ -81,11 +81,12 @@ struct Convection final : ConditionOfCase {
 
 // The surface points of particles, for those who compute weights.
 struct SurfacePoints {
+  static constexpr const char* normal_field = "surface_normal";
   static constexpr int interface = -1;  // number of the points where another body of the physics begins
 
   explicit SurfacePoints(const char* field) : surface(field) {}
 
-  In<Vector> normal{"normal"};
+  In<Vector> normal{normal_field, unit("1")};
   In<Scalar> distance{"signed_distance"};
   In<Scalar> surface;
   std::vector<Condition> conditions;
@@ -110,16 +111,19 @@ struct SurfacePoints {
 
 // The number of the condition at the surface point of each particle: 0 no surface point, -1 another body, 1 insulated, 2, 3, ... the
 // conditions in their order. Once, before the first step.
-// Where two faces are equally near, as at the corner of a lattice, the normal points between them and to no point of
-// the surface: such particles carry none, and their neighbours along both faces do for them. They are told by the
-// distance, which does not grow inwards as fast as the path.
+// Where faces are equally near, as at the edges of a lattice, the normal points between them and to no point of the
+// surface: such particles take that of one of the faces, from their nearest neighbour along it. They are told by the
+// distance, which does not grow inwards as fast as the path. (Without surface points of their own the fit in 3D was
+// unstable there.)
 struct FindSurface : RowOperator {
   static constexpr double reach = 1.0;    // of a surface point from its particle, in spacings
   static constexpr double contact = 1.0;  // of a particle of another body from a surface point, in spacings
 
   In<Vector> position{"position"};
-  In<Vector> normal{"normal", own_only};
+  In<Vector> normal{"normal"};
   In<Scalar> distance{"signed_distance"};
+  Out<Vector> face{SurfacePoints::normal_field, unit("1"),
+                   doc("Normal at the surface point of the particle.")};
   Out<Scalar> surface{"surface"};
 
   std::vector<Condition> conditions;
@@ -141,14 +145,15 @@ struct FindSurface : RowOperator {
  private:
   template <int D>
   double number(Particle<D> i) const {
+    face[i] = normal[i];
     if (distance[i] < -reach * spacing() * (1.0 + 1e-9)) return 0.0;
-    const Vec<D> x = position[i] - distance[i] * normal[i];
+    if (between_faces(i) && !take_face_of_neighbour(i)) return 0.0;
+    const Vec<D> x = position[i] - distance[i] * face[i];
     const double slack = 1e-6 * spacing();
     for (int a = 0; a < D; ++a) {
       const auto axis = static_cast<std::size_t>(a);
       if (x[a] < lower[axis] + slack || x[a] > upper[axis] - slack) return 0.0;
     }
-    if (between_faces(i)) return 0.0;
     if (touches_another(i, x)) return SurfacePoints::interface;
     for (std::size_t c = 0; c < conditions.size(); ++c)
       if (!conditions[c].where || conditions[c].where(D, x.e, 0.0) != 0.0) return static_cast<double>(c + 2);
@@ -171,6 +176,24 @@ struct FindSurface : RowOperator {
     return depth_per_path > 0.5 && depth_per_path < 0.85;
   }
 
+  // The normal of the nearest neighbour that is as deep as the particle and looks to one of its faces.
+  template <int D>
+  bool take_face_of_neighbour(Particle<D> i) const {
+    double nearest = HUGE_VAL;
+    for (std::uint32_t m = 0; m < neighbours(0).counts[i.index]; ++m) {
+      const std::uint32_t j = neighbours(0).indices[neighbours(0).offsets[i.index] + m];
+      const Vec<D> n = gather_vec<D>(normal.of_neighbours(0), j);
+      const double r = norm(position[i] - gather_vec<D>(position.of_neighbours(0), j));
+      const double between =
+          dot(n, normal[i]);  // 1 along the edge, less where the neighbour has a face of its own
+      if (r >= nearest || between > 0.9 || between < 0.3) continue;
+      if (std::abs(distance.of_neighbours(0)[j] - distance[i]) > 0.01 * spacing()) continue;
+      nearest = r;
+      face[i] = n;
+    }
+    return nearest < HUGE_VAL;
+  }
+
   template <int D>
   bool touches_another(Particle<D> i, const Vec<D>& x) const {
     for (std::size_t k = 1; k < n_relations(); ++k)
@@ -185,7 +208,7 @@ struct FindSurface : RowOperator {
 // The data g at the surface points, at the time of the stage.
 struct SurfaceData : ParticleOperator<SurfaceData> {
   In<Vector> position{"position"};
-  In<Vector> normal{"normal"};
+  In<Vector> normal{SurfacePoints::normal_field, unit("1")};
   In<Scalar> distance{"signed_distance"};
   In<Scalar> surface{"surface"};
   Out<Scalar> data{"data", derived};

@@ -82,7 +82,7 @@ void set_surface(Body& body) {
     distance[i] = -nearest;
     if (nearest < dx) surface[i] = axis == 0 ? (upper ? 3.0 : 2.0) : axis == 1 && upper ? 4.0 : 5.0;
   }
-  body["normal"] = normal;
+  body["surface_normal"] = normal;
   body["signed_distance"] = distance;
   body["c_surface"] = surface;
 }
@@ -104,12 +104,12 @@ void set_data(Body& body, const QuadraticField& c) {
     if (number < 2) return 0.0;
     std::vector<double> x(d);
     for (std::size_t a = 0; a < d; ++a)
-      x[a] = body["position"][i * d + a] - body["signed_distance"][i] * body["normal"][i * d + a];
+      x[a] = body["position"][i * d + a] - body["signed_distance"][i] * body["surface_normal"][i * d + a];
     const Condition condition = conditions()[static_cast<std::size_t>(number - 2)];
     double flux = 0;
     for (std::size_t a = 0; a < d; ++a)
       for (std::size_t b = 0; b < d; ++b)
-        flux += body["normal"][i * d + a] * tensor(d, a, b) * c.gradient(x.data(), b);
+        flux += body["surface_normal"][i * d + a] * tensor(d, a, b) * c.gradient(x.data(), b);
     return condition.a * c.value(x.data()) + condition.b * flux;
   });
 }
