@@ -13,7 +13,7 @@ namespace {
 
 constexpr double goal = 1e-3;  // of the residual, times the spacing
 // What is left beyond is of long wave length, and the smoother the less it does.
-constexpr int most_iterations = 100;
+constexpr int most_iterations = 200;
 
 template <int D>
 using Vectors = std::vector<Vec<D>>;
@@ -46,6 +46,24 @@ class MultiplierSystem {
       fits_well_.push_back(well_conditioned<D>(factors_.back()));
     }
     find_constraints();
+  }
+
+  // Whether all particles with all of their neighbours see them evenly, as on a lattice: then forces are consistent but
+  // for two supports' depth under the surface, where the change would do no good.
+  bool is_lattice() const {
+    for (std::uint64_t i = 0; i < n_; ++i) {
+      if (kind_[i] != Kind::inside) continue;
+      Vec<D> sum{};
+      double scale = 0;
+      const Row row = row_of(list_, i);
+      for (std::uint32_t m = 0; m < row.n; ++m) {
+        const Vec<D> d = difference(i, row.j[m]);
+        sum += weight(row.j[m], d) * d;
+        scale += weight(row.j[m], d) * norm(d);
+      }
+      if (norm(sum) > 1e-9 * scale) return false;
+    }
+    return true;
   }
 
   // Removes the part of vectors that is not constrained.
@@ -184,6 +202,7 @@ ForceConsistency make_consistent(const ReferenceSettings& settings, const shoal_
       }
   }
   MultiplierSystem<D> system(settings, list, geometry);
+  if (system.is_lattice()) return {};
   system.constrain(r);
   const double unit = settings.spacing / std::pow(settings.spacing, D) / std::sqrt(static_cast<double>(n));
   ForceConsistency report;
