@@ -48,8 +48,14 @@ class Materials {
   Made make(const shoal_object& material) const {
     const std::string type = material.type->name;
     Made made{abi_copy(static_cast<const shoal_material_api*>(material.type->api))};
-    call_plugin(type.substr(0, type.find('.')), type,
-                [&] { return made.api.create(&material, dimensions_, &made.self); });
+    try {
+      call_plugin(type.substr(0, type.find('.')), type,
+                  [&] { return made.api.create(&material, dimensions_, &made.self); });
+    } catch (const PluginFailure& failure) {
+      // The physics that asked for the material must not turn what is wrong in the case into a fault of its own.
+      if (failure.status() != SHOAL_CASE_ERROR) throw;
+      throw ModelError(failure.what());
+    }
     return made;
   }
 

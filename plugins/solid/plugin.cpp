@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shoal/plugin.hpp"
 #include "constraints.hpp"
+#include "contact.hpp"
 #include "load_physics.hpp"
 #include "materials/guccione.hpp"
 #include "materials/holzapfel_ogden.hpp"
@@ -12,6 +13,7 @@
 #include "materials/plastic.hpp"
 #include "materials/st_venant_kirchhoff.hpp"
 #include "point_probe.hpp"
+#include "rigid_plane.hpp"
 #include "total_lagrangian.hpp"
 
 SHOAL_PLUGIN(solid, "0.1.0") {
@@ -47,5 +49,7 @@ SHOAL_PLUGIN(solid, "0.1.0") {
   add<Pressure>("solid.pressure", "Pressure on the surface of a body, which follows it as it deforms.");
   add<PointForce>("solid.point_force", "A force on the particles around a point.");
   add<Torque>("solid.torque", "A torque on a part of a body.");
+  add<Contact>("solid.contact", "Bodies that touch each other or themselves, with friction.");
+  add<RigidPlane>("solid.rigid_plane", "A flat rigid wall that solids hit and leave again, with friction.");
   add<PointProbe>("solid.point", "Displacement of a point of the body, on its surface too.");
 }

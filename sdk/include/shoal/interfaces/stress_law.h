@@ -74,7 +74,7 @@ typedef struct shoal_stress_law {
   // materials by a smoothed one: P + (p(J) - p_smooth) J F^-T. NULL if the law has no such part. [worker]
   void (*volumetric_pressure)(void* self, uint64_t n, const double* jacobian, double* pressure);
   // Largest speed in m/s of plane waves, measured in the reference configuration, on top of the block's
-  // deformation and state: for the time step of laws that stiffen. Costs about ten times `stress`. NULL if that of
+  // deformation and state: for the time step of laws that stiffen. May cost twenty times `stress`. NULL if that of
   // the undeformed material always holds. [worker]
   shoal_status (*wave_speed)(void* self, const shoal_stress_block* block, double* speed);
 } shoal_stress_law;
