@@ -28,9 +28,10 @@ inline constexpr const char *total_doc = "Acceleration by all forces in the last
                             *dv_doc = "Gradient of the velocity at the midpoint, dv_a/dx_b.",
                             *dp_doc = "Gradient of the pressure at the midpoint.",
                             *v_mid_doc = "Velocity at the midpoint of the advection step.",
-                            *p_mid_doc = "Pressure at the midpoint of the advection step.";
+                            *p_mid_doc = "Pressure at the midpoint of the advection step.",
+                            *carried_doc = "Velocity carried along the shift, before the forces.";
 
-// The advection step: dt <= cfl h / max(|v|, 0.1 U), dt <= d h^2 / nu. The viscous limit is one of accuracy: the
+// The advection step: dt <= cfl h / max(|v|, least speed), dt <= d h^2 / nu. The viscous limit is one of accuracy: the
 // viscous step is stable beyond it.
 struct Departure : ParticleOperator<Departure> {
   In<Vector> total{"total_acceleration", unit("m/s2"), doc(total_doc)};
@@ -45,13 +46,12 @@ struct Departure : ParticleOperator<Departure> {
   Maximum fastest{};
 
   CoursePointer course;
-  double expected_speed = 0;              // m/s
-  double mach = 0.05;                     // of the largest speed
-  double viscosity = 0;                   // kinematic, m2/s
-  double stiffness = 0;                   // of the Laplacian: largest eigenvalue times dx^2
-  double cfl = 0.25;                      // of the advection
-  double viscous_number = 1.0;            // d above
-  static constexpr double slowest = 0.1;  // part of the expected speed below which steps grow no further
+  double mach = 0.05;           // of the largest speed
+  double viscosity = 0;         // kinematic, m2/s
+  double stiffness = 0;         // of the Laplacian: largest eigenvalue times dx^2
+  double cfl = 0.25;            // of the advection
+  double viscous_number = 1.0;  // d above
+  double least_speed = 0;       // m/s, below which steps grow no further
 
   void begin() {
     course->dt = dt();
@@ -66,11 +66,11 @@ struct Departure : ParticleOperator<Departure> {
     velocity_mid[i] = v + 0.5 * dt() * total[i] + velocity_gradient[i] * half_shift;
     pressure_mid[i] = pressure[i] + dot(pressure_gradient[i], half_shift);
   }
-  void end() { course->sound_speed = std::max(fastest.result(), slowest * expected_speed) / mach; }
+  void end() { course->sound_speed = std::max(fastest.result(), least_speed) / mach; }
 
   double time_step_of(auto i) const {
     const double h = smoothing_length();
-    const double of_speed = cfl * h / std::max(norm(velocity[i]), slowest * expected_speed);
+    const double of_speed = cfl * h / std::max(norm(velocity[i]), least_speed);
     return viscosity > 0.0 ? std::min(of_speed, viscous_number * h * h / viscosity) : of_speed;
   }
 
@@ -92,8 +92,9 @@ struct Carry : PairOperator<Carry> {
   In<Vector> velocity_mid{"velocity_mid", unit("m/s"), doc(v_mid_doc), derived};
   In<Scalar> pressure_mid{"pressure_mid", unit("Pa"), doc(p_mid_doc), derived};
   In<Vector> shift{"shift", unit("m"), doc(shift_doc), own_only};
-  InOut<Vector> velocity{"velocity"};
+  In<Vector> velocity{"velocity", own_only};
   InOut<Scalar> pressure{"pressure"};
+  Out<Vector> carried{"carried_velocity", unit("m/s"), doc(carried_doc), derived};
   Out<Matrix> velocity_gradient{"velocity_gradient", unit("1/s"), doc(dv_doc)};
   Out<Vector> pressure_gradient{"pressure_gradient", unit("Pa/m"), doc(dp_doc)};
 
@@ -102,7 +103,7 @@ struct Carry : PairOperator<Carry> {
     return sums(outer(p.j(velocity_mid) - p.i(velocity_mid), g), (p.j(pressure_mid) - p.i(pressure_mid)) * g);
   }
   void particle(auto i, auto dv, auto dp) const {
-    velocity[i] += dv * shift[i];
+    carried[i] = velocity[i] + dv * shift[i];
     pressure[i] += dot(dp, shift[i]);
     velocity_gradient[i] = dv;
     pressure_gradient[i] = dp;
@@ -115,12 +116,13 @@ struct Arrival : ParticleOperator<Arrival> {
   In<Vector> next_shift{"next_shift", unit("m"), doc(shift_doc), derived};
   InOut<Vector> shift{"shift", unit("m"), doc(shift_doc)};
   InOut<Vector> total{"total_acceleration", unit("m/s2"), doc(total_doc)};
-  InOut<Vector> velocity{"velocity"};
+  In<Vector> carried{"carried_velocity", unit("m/s"), doc(carried_doc), derived};
+  Out<Vector> velocity{"velocity"};
   InOut<Vector> position{"position"};
 
   void particle(auto i) const {
     const auto a = force[i] + by_pressure[i];
-    velocity[i] += dt() * a;
+    velocity[i] = carried[i] + dt() * a;
     position[i] += 0.5 * dt() * velocity[i] - 0.125 * dt() * dt() * total[i] + 0.5 * shift[i];
     total[i] = a;
     shift[i] = next_shift[i];

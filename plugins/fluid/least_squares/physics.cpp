@@ -8,6 +8,7 @@
 #include "shoal/interfaces/equation_of_state.h"
 
 #include "../advection_step.hpp"
+#include "../liquid.hpp"
 #include "course.hpp"
 #include "fit.hpp"
 #include "initial.hpp"
@@ -15,6 +16,7 @@
 #include "pressure.hpp"
 #include "stiffness.hpp"
 #include "viscosity.hpp"
+#include "walls.hpp"
 
 namespace shoal::fluid {
 namespace {
@@ -39,20 +41,47 @@ struct FluidBody {
   BodyIndex body;
   double density;    // kg/m3
   double viscosity;  // kinematic, m2/s
+  std::vector<BodyIndex> walls{};
   CoursePointer course = std::make_shared<Course>();
 
+  // Nothing drives the flow, so that steps may grow as it slows down. A driven one starts from rest in small steps.
+  bool decaying() const { return walls.empty() && b.gravity() == Vector3{}; }
+
+  Target alone() const { return fitted(b.target(body)); }
+  // With all particles that the fits look at.
   Target target() const {
-    Target target = b.target(body);
+    std::vector<BodyIndex> neighbours{body};
+    neighbours.insert(neighbours.end(), walls.begin(), walls.end());
+    return fitted(b.target(body, neighbours));
+  }
+  static Target fitted(Target target) {
     target.smoothing_kernel = SmoothingKernel::wendland_c2;
     target.cutoff = cutoff_radius(target.smoothing_kernel, target.smoothing_length);
     return target;
   }
 
+  // The same operator on each wall. Its fits look at the fluid around the surface, up to 2h from the wall's particle.
+  template <class Op>
+  void attach_at_walls(const char* name, At at) const {
+    for (const BodyIndex wall : walls) {
+      Target target = b.target(wall, {body});
+      target.smoothing_length = b.target(body).smoothing_length;
+      target = fitted(target);
+      target.cutoff *= 2.0;
+      b.attach<Op>(name, at, target, [&](auto& op) {
+        if constexpr (requires { op.course; }) {
+          op.course = course;
+          op.density = density;
+        }
+      });
+    }
+  }
+
   void attach_motion() const {
     const double h_over_dx = target().smoothing_length / target().spacing;
-    b.attach<Departure>("fluid.departure", at_drift, target(), [&](auto& op) {
+    b.attach<Departure>("fluid.departure", at_drift, alone(), [&](auto& op) {
       op.course = course;
-      op.expected_speed = physics.max_speed;
+      op.least_speed = decaying() ? 0.1 * physics.max_speed : physics.max_speed;
       op.mach = physics.mach;
       op.viscosity = viscosity;
       op.stiffness = laplacian_stiffness(b.dimensions(), h_over_dx);
@@ -61,44 +90,54 @@ struct FluidBody {
     });
     b.attach<Fit>("fluid.fit", at_fit, target(),
                   [&](auto& op) { op.shift_strength = physics.shift_strength; });
+    attach_at_walls<WallSurface>("fluid.wall_surface", at_fit);
+    attach_at_walls<WallFit>("fluid.wall_fit", at_fit);
+    attach_at_walls<WallVelocity<MidVelocity>>("fluid.wall_velocity_mid", at_fit);
+    attach_at_walls<WallPressure<MidPressure>>("fluid.wall_pressure_mid", at_fit);
     b.attach<Carry>("fluid.carry", at_fit, target());
+    attach_at_walls<WallVelocity<CarriedVelocity>>("fluid.wall_carried_velocity", at_fit);
   }
 
   void attach_forces() const {
     b.own_field(body, "acceleration", at_forces);
     const Vector3 g = b.gravity();
     if (g != Vector3{})
-      b.attach<Gravity>("fluid.gravity", at_forces, target(), [&](auto& op) { op.gravity = g; });
+      b.attach<Gravity>("fluid.gravity", at_forces, alone(), [&](auto& op) { op.gravity = g; });
     if (viscosity == 0.0) {
-      b.attach<InviscidForce>("fluid.inviscid_force", at_source, target());
+      b.attach<InviscidForce>("fluid.inviscid_force", at_source, alone());
       return;
     }
-    b.attach<ViscousStart>("fluid.viscous_start", at_forces, target());
+    b.attach<ViscousStart>("fluid.viscous_start", at_forces, alone());
+    attach_at_walls<WallVelocity<StageVelocity>>("fluid.wall_viscous_velocity", at_stage);
     b.attach<ViscousRate>("fluid.viscous_rate", at_stage, target(), [&](auto& op) {
       op.viscosity = viscosity;
       op.density = density;
     });
-    b.attach<ViscousStage>("fluid.viscous_stage", at_stage, target(), [&](auto& op) {
+    b.attach<ViscousStage>("fluid.viscous_stage", at_stage, alone(), [&](auto& op) {
       op.course = course;
       op.density = density;
     });
+    attach_at_walls<WallForceField<MeanViscous>>("fluid.wall_viscous_acceleration", at_source);
     b.attach<least_squares::ViscousForce>("fluid.viscous_force", at_source, target());
   }
 
   void attach_pressure() const {
+    attach_at_walls<WallForceField<SpecificForce>>("fluid.wall_specific_force", at_source);
     b.attach<WaveSource>("fluid.wave_source", at_source, target(), [&](auto& op) {
       op.course = course;
       op.density = density;
     });
+    attach_at_walls<WallPressure<PressureWave>>("fluid.wall_pressure_wave", at_wave);
     b.attach<WaveRate>("fluid.wave_rate", at_wave, target(), [&](auto& op) { op.course = course; });
-    b.attach<WaveStep>("fluid.wave_step", at_wave, target(), [&](auto& op) {
+    b.attach<WaveStep>("fluid.wave_step", at_wave, alone(), [&](auto& op) {
       op.course = course;
       op.cfl = physics.acoustic_cfl;
       op.damping = physics.damping;
     });
+    attach_at_walls<WallPressure<PressureImpulse>>("fluid.wall_pressure_impulse", at_arrival);
     b.attach<least_squares::PressureForce>("fluid.pressure_force", at_arrival, target(),
                                            [&](auto& op) { op.density = density; });
-    b.attach<Arrival>("fluid.arrival", at_arrival, target());
+    b.attach<Arrival>("fluid.arrival", at_arrival, alone());
   }
 };
 
@@ -111,6 +150,11 @@ void LeastSquares::build(const Builder& b) {
   b.loop("acoustic", at_acoustic, {"wave"});
   b.renew_neighbours_in("midpoint");
 
+  for (const BodyIndex wall : walls.value())
+    if (b.material<Wall>(wall, "fluid.wall")->slip.value() != "no_slip")
+      throw CaseError(std::string("fluid.least_squares has no-slip walls only, but wall '") +
+                      b.body(wall).name +
+                      "' has slip: free_slip; take fluid.wcsph, or a mirror face of the domain");
   for (const BodyIndex body : bodies.value()) {
     const auto eos = b.material_interface<shoal_equation_of_state>(body, SHOAL_EQUATION_OF_STATE,
                                                                    SHOAL_EQUATION_OF_STATE_REVISION);
@@ -119,9 +163,9 @@ void LeastSquares::build(const Builder& b) {
                       "' needs a material with a density and a viscosity, e.g. material: {fluid.liquid: "
                       "{density: 1000, viscosity: 1e-3}}");
     const double density = eos.api->reference_density(eos.self);
-    const FluidBody fluid{b, *this, body, density, eos.api->viscosity(eos.self) / density};
+    const FluidBody fluid{b, *this, body, density, eos.api->viscosity(eos.self) / density, walls.value()};
     b.body_moves(body);
-    b.attach<InitialMass>("fluid.initial_mass", {SHOAL_INITIAL, "state"}, fluid.target(),
+    b.attach<InitialMass>("fluid.initial_mass", {SHOAL_INITIAL, "state"}, fluid.alone(),
                           [&](auto& op) { op.reference_density = density; });
     fluid.attach_motion();
     fluid.attach_forces();

@@ -22,6 +22,9 @@ namespace shoal::fluid {
 struct LeastSquares final : Physics {
   Param<std::vector<BodyIndex>> bodies{"bodies", nullptr, "Bodies of fluid, each of material fluid.liquid.",
                                        example("[water]")};
+  Param<std::vector<BodyIndex>> walls{
+      "walls", nullptr, "No-slip bodies of material fluid.wall that bound the fluid, four layers thick.",
+      optional, example("[tank]")};
   Param<double> max_speed{"max_speed", "m/s",
                           "Largest speed that the flow will reach; with `mach` it sets the speed of sound.",
                           positive, example("1")};

@@ -38,7 +38,7 @@ struct WaveSource : PairOperator<WaveSource> {
   using Kernel = Weight<D>;
 
   In<FitGradient> gradient{"fit_gradient", unit("1"), doc(gradient_doc), derived, own_only};
-  In<Vector> velocity{"velocity"};
+  In<Vector> velocity{"carried_velocity", unit("m/s"), doc(carried_doc), derived};
   In<Vector> force{"specific_force", unit("m/s2"), doc(force_doc), derived};
   In<Matrix> velocity_gradient{"velocity_gradient", unit("1/s"), doc(dv_doc), own_only};
   In<Scalar> pressure{"pressure", own_only};

@@ -30,10 +30,10 @@ inline constexpr const char *rate_doc = "Rate of change of the velocity in a vis
                             *viscous_doc = "Mean viscous acceleration of the advection step.";
 
 struct ViscousStart : ParticleOperator<ViscousStart> {
-  In<Vector> velocity{"velocity"};
+  In<Vector> carried{"carried_velocity", unit("m/s"), doc(carried_doc), derived};
   Out<Vector> stage_velocity{"viscous_velocity", unit("m/s"), doc(stage_doc), derived};
 
-  void particle(auto i) const { stage_velocity[i] = velocity[i]; }
+  void particle(auto i) const { stage_velocity[i] = carried[i]; }
 };
 
 // nu lap w + F
@@ -74,7 +74,7 @@ struct LegendreStage {
 
 // One stage; after the last the mean viscous acceleration.
 struct ViscousStage : ParticleOperator<ViscousStage> {
-  In<Vector> velocity{"velocity"};
+  In<Vector> carried{"carried_velocity", unit("m/s"), doc(carried_doc), derived};
   In<Vector> rate{"viscous_rate", unit("m/s2"), doc(rate_doc), derived};
   In<Vector> acceleration{"acceleration"};
   In<Vector> pressure_gradient{"pressure_gradient", unit("Pa/m"), doc(dp_doc)};
@@ -89,7 +89,7 @@ struct ViscousStage : ParticleOperator<ViscousStage> {
 
   void begin() { stage = LegendreStage::of(++course->viscous_stage, course->viscous_stages); }
   void particle(auto i) const {
-    const auto w0 = velocity[i], w = stage_velocity[i];
+    const auto w0 = carried[i], w = stage_velocity[i];
     const double whole = course->dt;
     if (course->viscous_stage == 1) {
       first_rate[i] = rate[i];

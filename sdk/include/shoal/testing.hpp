@@ -64,6 +64,7 @@ struct Setup {
   double time = 0;
   bool scalar = false;           // one neighbour after the other
   std::uint64_t generation = 1;  // of the lists: another number tells the operator that they are new
+  double cutoff = 0;             // m, of the lists; 0: that of the smoothing kernel
 };
 
 namespace impl {
@@ -120,7 +121,8 @@ void run(Op& op, Body& own, std::vector<Body*> neighbours, const Setup& setup) {
   Target target;
   target.smoothing_kernel = setup.smoothing_kernel;
   target.smoothing_length = setup.smoothing_length;
-  target.cutoff = cutoff_radius(setup.smoothing_kernel, setup.smoothing_length);
+  target.cutoff =
+      setup.cutoff > 0 ? setup.cutoff : cutoff_radius(setup.smoothing_kernel, setup.smoothing_length);
   target.spacing = setup.spacing;
   target.neighbours.resize(neighbours.size());
   op.set_target(target);

@@ -122,3 +122,71 @@ TEST_CASE("a body without a liquid is named") {
                "body 'water' needs a material with a density and a viscosity, e.g. material: {fluid.liquid: "
                "{density: 1000, viscosity: 1e-3}}"));
 }
+
+namespace {
+
+// Flow between plates that a body force drives from rest: rms of the difference from the exact series
+// (Morris, Fox, Zhu 1997) at nu t / L^2 = 0.05, over the largest speed of the steady flow.
+std::string channel(int n, const std::string& slip = "no_slip") {
+  return "shoal: 1\n"
+         "plugins: [fluid]\n"
+         "dimensions: 2\n"
+         "parameters: {dx: 1/" +
+         std::to_string(n) +
+         "}\n"
+         "resolution: $dx\n"
+         "gravity: [8, 0]\n"
+         "domain: {lower: [0, -4*dx], upper: [12*dx, 1 + 4*dx], periodic: [x]}\n"
+         "bodies:\n"
+         "  water:\n"
+         "    shape: {box: {lower: [0, 0], upper: [12*dx, 1]}}\n"
+         "    material: {fluid.liquid: {density: 1, viscosity: 1}}\n"
+         "  plates:\n"
+         "    shape:\n"
+         "      union:\n"
+         "        of:\n"
+         "          - box: {lower: [-8*dx, -4*dx], upper: [24*dx, 0]}\n"
+         "          - box: {lower: [-8*dx, 1], upper: [24*dx, 1 + 4*dx]}\n"
+         "    material: {fluid.wall: {slip: " +
+         slip +
+         "}}\n"
+         "physics:\n"
+         "  - fluid.least_squares: {bodies: [water], walls: [plates], max_speed: 1}\n"
+         "run: {end: 0.05}\n"
+         "probes:\n"
+         "  error:\n"
+         "    mean:\n"
+         "      of: \"(velocity.x - 4*y*(1 - y) + 32/pi^3*(exp(-pi^2*t)*sin(pi*y)"
+         " + exp(-9*pi^2*t)*sin(3*pi*y)/27 + exp(-25*pi^2*t)*sin(5*pi*y)/125 + "
+         "exp(-49*pi^2*t)*sin(7*pi*y)/343))^2\"\n"
+         "      body: water\n"
+         "    every: 10 ms\n";
+}
+double channel_error(int n) {
+  write("channel.yaml", channel(n));
+  const Result result = app_test::shoal({"run", "channel.yaml", "-o", "channel", "--force"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  return std::sqrt(rows("channel/probes/error.csv").back()[1]);
+}
+
+}  // namespace
+
+TEST_CASE("no-slip walls keep the order: flow between plates") {
+  const double coarse = channel_error(10), fine = channel_error(20);
+  CAPTURE(coarse);
+  CAPTURE(fine);
+  CHECK(fine < 1e-3);
+  CHECK(std::log2(coarse / fine) > 2.0);
+}
+
+TEST_CASE("operators of walls are in the plan of a case with walls only, and a wall that slips is refused") {
+  CHECK_FALSE(contains(plan(vortex(20, 100.0, "1")), "fluid.wall_"));
+  CHECK(contains(plan(channel(10)), "fluid.wall_fit  on plates with water"));
+  write("channel.yaml", channel(10, "free_slip"));
+  const Result result = app_test::shoal({"check", "channel.yaml"});
+  CHECK(result.code == 2);
+  CHECK(contains(result.err,
+                 "fluid.least_squares has no-slip walls only, but wall 'plates' has slip: free_slip; take "
+                 "fluid.wcsph, or a mirror face of the domain"));
+}
