@@ -29,6 +29,17 @@ shoal_status evaluate(const shoal_expression* expression, std::int32_t dimension
   return SHOAL_OK;
 }
 
+const char* name_in(const shoal_expression* expression, std::uint32_t k) {
+  const std::vector<std::string>& names = Expression::from_handle(expression).fields();
+  return k < names.size() ? names[k].c_str() : nullptr;
+}
+
+shoal_status evaluate_names(const shoal_expression* expression, std::int32_t dimensions, std::uint64_t n,
+                            const double* position, const double* const* columns, double t, double* out) {
+  Expression::from_handle(expression).evaluate(dimensions, n, position, columns, t, out);
+  return SHOAL_OK;
+}
+
 // A place in words ("dam_break.yaml:12:51") as a place in the text, so that the message shows the line.
 Place place_of(const std::string& words, const CaseFile& file) {
   const Place& top = file.root().place();
@@ -60,6 +71,7 @@ bool requires_plugin(const Loader& loader, std::string_view a, std::string_view 
 Workshop::Workshop(const Options& options, const std::vector<std::string>& of_case)
     : loader(search_settings(options, of_case)), registry(check_parameter) {
   set_evaluate(evaluate);
+  set_names(name_in, evaluate_names);
   registry.add_own(own_shape_types());
   registry.add_own(own_probe_types());
   for (const std::string& line : loader.search_path().description()) log(LogLevel::debug, "plugins: " + line);

@@ -312,7 +312,8 @@ bool Parameters::mentions_broken(const std::string& expression) const {
 
 std::optional<Expression> read_expression(const Node& node, const NumberRequest& request,
                                           const std::vector<std::string>& variables,
-                                          const Parameters& parameters, Diagnostics& diagnostics) {
+                                          const Parameters& parameters, Diagnostics& diagnostics,
+                                          bool any_name) {
   const std::string text = node.is_scalar() ? trimmed(node.text()) : std::string();
   const Quantity quantity = split(text, request.allow_infinite);
   if (!check_scalar(node, quantity, request, diagnostics)) return std::nullopt;
@@ -322,7 +323,10 @@ std::optional<Expression> read_expression(const Node& node, const NumberRequest&
     return value ? std::optional<Expression>(Expression(*value)) : std::nullopt;
   }
   try {
-    Expression expression(text, parameters.scope(variables));
+    ExpressionScope scope = parameters.scope(variables);
+    if (any_name)
+      scope.is_field = [](const std::string& name) { return name.find('.') == std::string::npos; };
+    Expression expression(text, scope);
     if (!unit_fits(node, request, parameters, diagnostics)) return std::nullopt;
     if (expression.is_constant() && !check_finite(expression.value(), node, diagnostics)) return std::nullopt;
     return expression;

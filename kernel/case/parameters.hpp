@@ -57,10 +57,12 @@ struct NumberRequest {
 std::optional<double> read_number(const Node& node, const NumberRequest& request,
                                   const Parameters& parameters, Diagnostics& diagnostics);
 
-/// The same, or an expression of the given variables.
+/// The same, or an expression of the given variables; with `any_name` also of names that the case does not know, which
+/// are the fields of the expression.
 std::optional<Expression> read_expression(const Node& node, const NumberRequest& request,
                                           const std::vector<std::string>& variables,
-                                          const Parameters& parameters, Diagnostics& diagnostics);
+                                          const Parameters& parameters, Diagnostics& diagnostics,
+                                          bool any_name = false);
 
 /// "a length (m)", "a number".
 std::string described_number(const NumberRequest& request);

@@ -271,8 +271,9 @@ class ValueReader {
   void expression(const Node& node) {
     static const std::vector<std::string> plane{"x", "y", "t"};
     static const std::vector<std::string> space{"x", "y", "z", "t"};
-    const std::optional<Expression> read = read_expression(
-        node, request_, context_.dimensions == 2 ? plane : space, context_.parameters, context_.diagnostics);
+    const std::optional<Expression> read =
+        read_expression(node, request_, context_.dimensions == 2 ? plane : space, context_.parameters,
+                        context_.diagnostics, (parameter_.flags & SHOAL_PARAMETER_NAMES) != 0);
     if (!read) return fail();
     if (!read->is_constant() || inside_bounds(read->value(), node)) expressions_.push_back(*read);
   }

@@ -25,6 +25,8 @@ Sink& sink() {
 }
 
 std::atomic<EvaluateFunction> evaluate_function{nullptr};
+std::atomic<EvaluateNamesFunction> evaluate_names_function{nullptr};
+std::atomic<NameFunction> name_function{nullptr};
 
 // A flag beside the text keeps the call of a callback that does not fail free of string work.
 thread_local bool has_failure = false;
@@ -44,22 +46,41 @@ void host_fail(const char* text) {
   has_failure = true;
 }
 
-shoal_status host_evaluate(const shoal_expression* expression, int32_t dimensions, uint64_t n,
-                           const double* position, double t, double* out) {
-  const EvaluateFunction evaluate = evaluate_function.load(std::memory_order_acquire);
-  if (!evaluate || !expression) {
-    host_fail(evaluate ? "an expression that is not set was evaluated"
+// Calls a function of whoever can evaluate.
+template <class Function, class Call>
+shoal_status evaluated(const shoal_expression* expression, Function function, Call&& call) {
+  if (!function || !expression) {
+    host_fail(function ? "an expression that is not set was evaluated"
                        : "expressions cannot be evaluated before the case is read");
     return SHOAL_ERROR;
   }
   try {
-    return evaluate(expression, dimensions, n, position, t, out);
+    return call(function);
   } catch (const std::exception& error) {
     host_fail(error.what());
   } catch (...) {
     host_fail("an expression could not be evaluated");
   }
   return SHOAL_ERROR;
+}
+
+shoal_status host_evaluate(const shoal_expression* expression, int32_t dimensions, uint64_t n,
+                           const double* position, double t, double* out) {
+  return evaluated(expression, evaluate_function.load(std::memory_order_acquire),
+                   [&](auto evaluate) { return evaluate(expression, dimensions, n, position, t, out); });
+}
+
+shoal_status host_evaluate_names(const shoal_expression* expression, int32_t dimensions, uint64_t n,
+                                 const double* position, const double* const* columns, double t,
+                                 double* out) {
+  return evaluated(expression, evaluate_names_function.load(std::memory_order_acquire), [&](auto evaluate) {
+    return evaluate(expression, dimensions, n, position, columns, t, out);
+  });
+}
+
+const char* host_expression_name(const shoal_expression* expression, uint32_t k) {
+  const NameFunction name = name_function.load(std::memory_order_acquire);
+  return name && expression ? name(expression, k) : nullptr;
 }
 
 }  // namespace
@@ -79,6 +100,10 @@ void log(LogLevel level, std::string_view text) {
 }
 
 void set_evaluate(EvaluateFunction evaluate) { evaluate_function.store(evaluate, std::memory_order_release); }
+void set_names(NameFunction name, EvaluateNamesFunction evaluate) {
+  name_function.store(name, std::memory_order_release);
+  evaluate_names_function.store(evaluate, std::memory_order_release);
+}
 
 const shoal_host& plugin_host() {
   static const std::string version(build_info::version);
@@ -89,7 +114,9 @@ const shoal_host& plugin_host() {
                                 .version = version.c_str(),
                                 .log = host_log,
                                 .fail = host_fail,
-                                .evaluate = host_evaluate};
+                                .evaluate = host_evaluate,
+                                .expression_name = host_expression_name,
+                                .evaluate_names = host_evaluate_names};
   return table;
 }
 

@@ -32,6 +32,12 @@ void log(LogLevel level, std::string_view text);
 using EvaluateFunction = shoal_status (*)(const shoal_expression* expression, int32_t dimensions, uint64_t n,
                                           const double* position, double t, double* out);
 void set_evaluate(EvaluateFunction evaluate);
+/// The same for shoal_host::expression_name and evaluate_names.
+using NameFunction = const char* (*)(const shoal_expression* expression, uint32_t k);
+using EvaluateNamesFunction = shoal_status (*)(const shoal_expression* expression, int32_t dimensions,
+                                               uint64_t n, const double* position,
+                                               const double* const* columns, double t, double* out);
+void set_names(NameFunction name, EvaluateNamesFunction evaluate);
 
 /// The one host table of this process.
 const shoal_host& plugin_host();

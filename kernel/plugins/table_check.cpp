@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::uint32_t known_flags = SHOAL_PARAMETER_REQUIRED | SHOAL_PARAMETER_LIST |
                                       SHOAL_PARAMETER_HAS_MINIMUM | SHOAL_PARAMETER_HAS_MAXIMUM |
-                                      SHOAL_PARAMETER_MINIMUM_EXCLUDED | SHOAL_PARAMETER_MAXIMUM_EXCLUDED;
+                                      SHOAL_PARAMETER_MINIMUM_EXCLUDED | SHOAL_PARAMETER_MAXIMUM_EXCLUDED |
+                                      SHOAL_PARAMETER_NAMES;
 
 bool is_blank(const char* text) {
   return !text || std::string_view(text).find_first_not_of(" \t\n") == std::string_view::npos;

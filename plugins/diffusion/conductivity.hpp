@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "medium.hpp"
+#include "reaction/wave_speed.hpp"
 #include "shoal/particle_operator.hpp"
 #include "species.hpp"
 
@@ -44,6 +45,7 @@ struct ScalarConductivity : ParticleOperator<ScalarConductivity> {
 
   std::string field;
   Conductivity medium;
+  std::shared_ptr<const WaveSpeedCorrection> correction;  // or null
   Names names;
 
   void set(const std::string& species, const Conductivity& k) {
@@ -57,7 +59,7 @@ struct ScalarConductivity : ParticleOperator<ScalarConductivity> {
       if (!(k[i - begin] > 0.0))
         impl::not_positive(field, position.data() + i * static_cast<std::uint64_t>(dimensions()),
                            dimensions());
-      conductivity.data()[i] = k[i - begin];
+      conductivity.data()[i] = correction ? (*correction)(k[i - begin]) : k[i - begin];
     }
   }
 };
@@ -69,6 +71,7 @@ struct TensorConductivity : ParticleOperator<TensorConductivity> {
 
   std::string field;
   Conductivity medium;
+  std::shared_ptr<const WaveSpeedCorrection> correction;  // or null
   Names names;
 
   void set(const std::string& species, const Conductivity& k) {
@@ -97,7 +100,7 @@ struct TensorConductivity : ParticleOperator<TensorConductivity> {
       const Mat<D> tensor = tensor_at<D>(Particle<D>{i, nullptr}, i - begin, parts);
       const Mat<D> result = k[i - begin] * tensor;
       if (!positive_definite(result)) impl::not_positive(field, position.data() + i * D, D);
-      conductivity[Particle<D>{i, nullptr}] = result;
+      conductivity[Particle<D>{i, nullptr}] = correction ? (*correction)(result) : result;
     }
   }
 

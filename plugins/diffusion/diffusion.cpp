@@ -8,6 +8,7 @@
 #include "conductivity.hpp"
 #include "fit.hpp"
 #include "integrator.hpp"
+#include "line_weights.hpp"
 #include "pairwise.hpp"
 #include "source.hpp"
 #include "stencil.hpp"
@@ -121,14 +122,46 @@ class OneField {
   bool conservative() const { return physics_.scheme.value() == "conservative"; }
   bool moving() const { return physics_.inside.is_set(); }
 
-  void attach_conductivity(std::size_t k) const { attach_conductivity(bodies_[k].index, media_[k]); }
-  void attach_conductivity(BodyIndex body, const Conductivity& medium) const {
-    const auto setup = [&](auto& op) { op.set(field_, medium); };
+  void attach_conductivity(std::size_t k) const {
+    attach_conductivity(bodies_[k].index, media_[k], wave_speed_correction(k));
+  }
+  void attach_conductivity(BodyIndex body, const Conductivity& medium,
+                           const std::shared_ptr<const WaveSpeedCorrection>& correction = nullptr) const {
+    const auto setup = [&](auto& op) {
+      op.set(field_, medium);
+      op.correction = correction;
+    };
     const Target target = b_.target(body);
     if (isotropic_)
       b_.attach<ScalarConductivity>("diffusion.coefficient", at_start, target, setup);
     else
       b_.attach<TensorConductivity>("diffusion.coefficient", at_start, target, setup);
+  }
+
+  std::shared_ptr<const WaveSpeedCorrection> wave_speed_correction(std::size_t k) const {
+    if (!physics_.wave_speed_of.is_set()) return nullptr;
+    if (bodies_[k].medium->capacity() != 1.0)
+      throw CaseError(physics_.wave_speed_of.place() +
+                      ": wave_speed_of works on bodies of diffusion.medium, whose capacity is 1");
+    if (physics_.scheme.value() == "monotone")
+      throw CaseError(physics_.wave_speed_of.place() +
+                      ": wave_speed_of knows the schemes accurate and conservative, not monotone");
+    const Target target = b_.target(bodies_[k].index);
+    const auto weights = [target, isotropic = isotropic_, dimensions = b_.dimensions(),
+                          accurate = physics_.scheme.value() == "accurate"](const AxisValues& d,
+                                                                            std::size_t axis) {
+      std::vector<double> line;
+      const auto fill = [&]<int D>() {
+        with_kernel<D>(target.smoothing_kernel, target.smoothing_length, [&](const auto& kernel) {
+          if (accurate) line = fit_line_weights<D>(kernel, target.spacing, d, axis);
+          if (line.empty()) line = pairwise_line_weights<D>(kernel, target.spacing, isotropic, d, axis);
+        });
+      };
+      dimensions == 2 ? fill.template operator()<2>() : fill.template operator()<3>();
+      return line;
+    };
+    return std::make_shared<const WaveSpeedCorrection>(*physics_.wave_speed_of->object, b_.dimensions(),
+                                                       target.spacing, weights);
   }
 
   // The body with all bodies of the physics as neighbours, itself first.

@@ -68,6 +68,15 @@ struct Diffusion final : Physics {
       "Loop and stage of another plugin in which the loop of diffusion runs, for fields that a moving body "
       "carries along.",
       optional, example("advection/forces")};
+  Param<ObjectHandle> wave_speed_of{
+      "wave_speed_of",
+      nullptr,
+      "Reaction whose plane waves shall have their right speed although the particles do not resolve the "
+      "front: the "
+      "coefficients are raised until they do, by an amount that vanishes with the spacing.",
+      ObjectsOf{SHOAL_TYPE_MATERIAL},
+      optional,
+      example("{diffusion.ten_tusscher_panfilov: {cell: epi}}")};
   Param<Choice> integrator{"integrator", nullptr,
                            "rk2: Heun's method at its largest stable step. rkl2: super time steps as long as "
                            "'accuracy' allows. auto: "

@@ -3,6 +3,13 @@
 #include "shoal/plugin.hpp"
 #include "diffusion.hpp"
 #include "medium.hpp"
+#include "reaction/aliev_panfilov.hpp"
+#include "reaction/allen_cahn.hpp"
+#include "reaction/fitzhugh_nagumo.hpp"
+#include "reaction/formula.hpp"
+#include "reaction/reaction.hpp"
+#include "reaction/stimulus.hpp"
+#include "reaction/ten_tusscher_panfilov.hpp"
 #include "surface.hpp"
 
 SHOAL_PLUGIN(diffusion, "0.1.0") {
@@ -20,4 +27,22 @@ SHOAL_PLUGIN(diffusion, "0.1.0") {
   add<Flux>("diffusion.flux", "A given flux through the surface; under 'boundaries' of diffusion.diffusion.");
   add<Convection>("diffusion.convection",
                   "Transfer to what surrounds the body; under 'boundaries' of diffusion.diffusion.");
+  add<Reaction>(
+      "diffusion.reaction",
+      "Reactions between diffusing fields, or of fields that stay in place: excitable tissue, chemistry, "
+      "separating phases. Split from the diffusion with second order.",
+      "Strang 1968, doi:10.1137/0705041");
+  add<Stimulus>("diffusion.stimulus",
+                "A stimulus of a reaction's first variable, in a region and for a time.");
+  add<AllenCahn>("diffusion.allen_cahn", "Separation of two phases.", "Allen, Cahn 1979");
+  add<FitzHughNagumo>("diffusion.fitzhugh_nagumo",
+                      "Excitable medium of two variables, for waves and spirals.",
+                      "FitzHugh 1961; Nagumo, Arimoto, Yoshizawa 1962");
+  add<AlievPanfilov>("diffusion.aliev_panfilov",
+                     "Heart muscle in two variables, with the restitution of its action potential.",
+                     "Aliev, Panfilov 1996, doi:10.1016/0960-0779(95)00089-5");
+  add<Formula>("diffusion.formula", "A reaction written in the case, as expressions of its variables.");
+  add<TenTusscherPanfilov>("diffusion.ten_tusscher_panfilov",
+                           "Human ventricular cell, 19 variables: epicardium, endocardium and M cells.",
+                           "ten Tusscher, Panfilov 2006, doi:10.1152/ajpheart.00109.2006");
 }

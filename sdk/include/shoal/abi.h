@@ -112,7 +112,9 @@ enum {
   SHOAL_PARAMETER_HAS_MINIMUM = 1u << 2,
   SHOAL_PARAMETER_HAS_MAXIMUM = 1u << 3,
   SHOAL_PARAMETER_MINIMUM_EXCLUDED = 1u << 4,  // value > minimum, else value >= minimum
-  SHOAL_PARAMETER_MAXIMUM_EXCLUDED = 1u << 5
+  SHOAL_PARAMETER_MAXIMUM_EXCLUDED = 1u << 5,
+  SHOAL_PARAMETER_NAMES =
+      1u << 6  // an expression may use names that the case does not know: the plugin's own
 };
 
 typedef struct shoal_parameter {
@@ -518,6 +520,12 @@ typedef struct shoal_host {
   // out[k] at the k-th point (D interleaved coordinates) and time t.            // [any]
   shoal_status (*evaluate)(const shoal_expression* expression, int32_t dimensions, uint64_t n,
                            const double* position, double t, double* out);
+  // Of a parameter with SHOAL_PARAMETER_NAMES: the k-th name that the expression uses and the case does not know; NULL
+  // behind the last.                                                            // [any]
+  const char* (*expression_name)(const shoal_expression* expression, uint32_t k);
+  // As evaluate, with columns[k][i] the value of name k at point i.             // [any]
+  shoal_status (*evaluate_names)(const shoal_expression* expression, int32_t dimensions, uint64_t n,
+                                 const double* position, const double* const* columns, double t, double* out);
 } shoal_host;
 
 // Exported by each plugin as `shoal_plugin_entry`; called once, after the stamp was accepted. The host outlives the

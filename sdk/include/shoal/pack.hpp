@@ -121,7 +121,8 @@ struct Pack {
     return x;
   }
 
-  // These call the C library once per lane: about `lanes` times the cost of one call.
+  // These call the C library once per lane: about `lanes` times the cost of one call. pack_math.hpp has fast_exp and
+  // fast_log, which do not.
   friend Pack exp(Pack a) {
     return a.each([](double x) { return std::exp(x); });
   }

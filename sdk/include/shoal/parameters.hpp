@@ -38,6 +38,19 @@ class Expression {
   void evaluate(int dimensions, std::uint64_t n, const double* positions, double t, double* out) const {
     check_host(host().evaluate(handle_, dimensions, n, positions, t, out));
   }
+  // The names of the plugin's own that it uses (parameters with the option `own_names`), and values with columns[k][i]
+  // that of the k-th name at point i.
+  std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    if (!SHOAL_HAS(shoal_host, &host(), evaluate_names)) return all;
+    for (std::uint32_t k = 0; const char* name = host().expression_name(handle_, k); ++k)
+      all.emplace_back(name);
+    return all;
+  }
+  void evaluate(int dimensions, std::uint64_t n, const double* positions, const double* const* columns,
+                double t, double* out) const {
+    check_host(host().evaluate_names(handle_, dimensions, n, positions, columns, t, out));
+  }
   double operator()(int dimensions, const double* position, double t) const {
     double value = 0;
     evaluate(dimensions, 1, position, t, &value);
@@ -112,6 +125,10 @@ constexpr Example example(const char* text) { return {text}; }
 struct Optional {};
 inline constexpr Optional optional{};
 
+// An expression may use names that the case does not know; Expression::names tells which.
+struct OwnNames {};
+inline constexpr OwnNames own_names{};
+
 struct Choices {
   std::vector<const char*> words;
 };
@@ -153,6 +170,7 @@ class ParameterBase {
   }
   void apply(Example text) { description_.example = text.text; }
   void apply(Optional) { optional_ = true; }
+  void apply(OwnNames) { description_.flags |= SHOAL_PARAMETER_NAMES; }
   void apply(Choices choices) { choices_ = std::move(choices.words); }
   void apply(ObjectsOf objects) { description_.object_kind = objects.kind; }
 

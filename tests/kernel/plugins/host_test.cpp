@@ -145,3 +145,25 @@ TEST_CASE("expressions are evaluated by whoever can") {
   CHECK(take_failure_text() == "division by zero");
   set_evaluate(nullptr);
 }
+
+TEST_CASE("expressions of a plugin's own names are evaluated by whoever can") {
+  const auto* expression = reinterpret_cast<const shoal_expression*>(&plugin_host());
+  const double point[2] = {1.0, 2.0}, value = 5.0;
+  const double* columns[1] = {&value};
+  double out = 0.0;
+  CHECK(plugin_host().expression_name(expression, 0) == nullptr);
+  CHECK(plugin_host().evaluate_names(expression, 2, 1, point, columns, 0.0, &out) == SHOAL_ERROR);
+  CHECK(take_failure_text() == "expressions cannot be evaluated before the case is read");
+  set_names([](const shoal_expression*, uint32_t k) { return k == 0 ? "u" : nullptr; },
+            [](const shoal_expression*, int32_t, uint64_t, const double* position,
+               const double* const* column, double t, double* result) {
+              *result = position[0] + column[0][0] + t;
+              return SHOAL_OK;
+            });
+  CHECK(std::string(plugin_host().expression_name(expression, 0)) == "u");
+  CHECK(plugin_host().expression_name(expression, 1) == nullptr);
+  CHECK(plugin_host().expression_name(nullptr, 0) == nullptr);
+  CHECK(plugin_host().evaluate_names(expression, 2, 1, point, columns, 0.5, &out) == SHOAL_OK);
+  CHECK(out == 6.5);
+  set_names(nullptr, nullptr);
+}

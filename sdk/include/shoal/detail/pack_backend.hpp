@@ -87,6 +87,20 @@ inline Raw gather(const double* base, RawIndex index) {
   return _mm512_mask_i32gather_pd(_mm512_setzero_pd(), full_mask, scaled, base, 8);
 }
 
+// For pack_math.hpp. 2^n, where `shifted` is the whole number n (-1022 <= n <= 1023) plus 1.5 * 2^52.
+inline Raw power_of_two(Raw shifted) {
+  const __m512i bits = _mm512_castpd_si512(shifted) << 52;
+  return _mm512_castsi512_pd(bits + _mm512_castpd_si512(broadcast(1.0)));
+}
+// x = mantissa * 2^n with sqrt(1/2) <= mantissa < sqrt(2), for normal x > 0; returns n.
+inline Raw split_exponent(Raw x, Raw& mantissa) {
+  const __m512i one = _mm512_castpd_si512(broadcast(1.0)), bits = _mm512_castpd_si512(x);
+  const __m512i biased = (bits - _mm512_castpd_si512(broadcast(0.70710678118654752)) + one) >> 52;
+  mantissa = _mm512_castsi512_pd(bits - (biased << 52) + one);
+  const Raw shift = broadcast(0x1.8p52);
+  return _mm512_castsi512_pd(biased + _mm512_castpd_si512(shift)) - (shift + broadcast(1023.0));
+}
+
 #elif defined(__AVX__)
 
 inline constexpr int lanes = 4;
@@ -142,6 +156,20 @@ inline Raw gather(const double* base, RawIndex index) {
   return _mm256_setr_pd(base[std::size_t{x[0]} * Stride], base[std::size_t{x[1]} * Stride],
                         base[std::size_t{x[2]} * Stride], base[std::size_t{x[3]} * Stride]);
 #endif
+}
+
+// For pack_math.hpp. 2^n, where `shifted` is the whole number n (-1022 <= n <= 1023) plus 1.5 * 2^52.
+inline Raw power_of_two(Raw shifted) {
+  const __m256i bits = _mm256_castpd_si256(shifted) << 52;
+  return _mm256_castsi256_pd(bits + _mm256_castpd_si256(broadcast(1.0)));
+}
+// x = mantissa * 2^n with sqrt(1/2) <= mantissa < sqrt(2), for normal x > 0; returns n.
+inline Raw split_exponent(Raw x, Raw& mantissa) {
+  const __m256i one = _mm256_castpd_si256(broadcast(1.0)), bits = _mm256_castpd_si256(x);
+  const __m256i biased = (bits - _mm256_castpd_si256(broadcast(0.70710678118654752)) + one) >> 52;
+  mantissa = _mm256_castsi256_pd(bits - (biased << 52) + one);
+  const Raw shift = broadcast(0x1.8p52);
+  return _mm256_castsi256_pd(biased + _mm256_castpd_si256(shift)) - (shift + broadcast(1023.0));
 }
 
 #else  // two vectors of 16 bytes: SSE2, NEON and their like; wider vectors would change the calling convention
@@ -230,6 +258,28 @@ template <int Stride>
 inline Raw gather(const double* base, RawIndex index) {
   const auto at = [&](int k) { return base[std::size_t{index.lane[k]} * Stride]; };
   return {{Double2{at(0), at(1)}, Double2{at(2), at(3)}}};
+}
+
+// For pack_math.hpp. 2^n, where `shifted` is the whole number n (-1022 <= n <= 1023) plus 1.5 * 2^52.
+inline Raw power_of_two(Raw shifted) {
+  Raw power;
+  for (int k = 0; k < 2; ++k)
+    power.half[k] = bits_to_double((bits_to_long(shifted.half[k]) << 52) + bits_to_long(Double2{1.0, 1.0}));
+  return power;
+}
+// x = mantissa * 2^n with sqrt(1/2) <= mantissa < sqrt(2), for normal x > 0; returns n.
+inline Raw split_exponent(Raw x, Raw& mantissa) {
+  const Long2 one = bits_to_long(Double2{1.0, 1.0});
+  const Long2 root = bits_to_long(Double2{0.70710678118654752, 0.70710678118654752});
+  const Double2 shift = {0x1.8p52, 0x1.8p52};
+  Raw n;
+  for (int k = 0; k < 2; ++k) {
+    const Long2 bits = bits_to_long(x.half[k]);
+    const Long2 biased = (bits - root + one) >> 52;
+    mantissa.half[k] = bits_to_double(bits - (biased << 52) + one);
+    n.half[k] = bits_to_double(biased + bits_to_long(shift)) - (shift + 1023.0);
+  }
+  return n;
 }
 
 #endif
