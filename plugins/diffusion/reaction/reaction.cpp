@@ -21,7 +21,7 @@ std::unique_ptr<Stimulus> read_stimulus(const shoal_object& object, int dimensio
                     " is no stimulus; write {diffusion.stimulus: {...}}");
   auto stimulus = std::make_unique<Stimulus>();
   stimulus->read(object, dimensions);
-  stimulus->check();
+  stimulus->validate();
   return stimulus;
 }
 

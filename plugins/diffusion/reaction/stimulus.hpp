@@ -35,7 +35,7 @@ struct Stimulus final : Material {
       "weakens it.",
       optional, example("hypot(x, y) < 0.01")};
 
-  void check() const {
+  void validate() const {
     if (period.is_set() && period < duration)
       throw CaseError(period.place() +
                       ": the period is shorter than the duration; a stimulus must end before it "
