@@ -364,6 +364,7 @@ class CaseReader {
     reference.error = values.text("error");
     reference.tolerance = values.real("tolerance");
     reference.scale = values.optional_real("scale");
+    reference.average = values.optional_real("average");
     reference.from = values.real("from");
     reference.to = values.optional_real("to");
     check_reference(reference, node);

@@ -97,6 +97,7 @@ struct ReferenceModel {
   std::string error;  ///< rms, relative_rms, max, peak, final
   double tolerance = 0;
   std::optional<double> scale;
+  std::optional<double> average;         ///< s
   double from = 0;                       ///< s
   std::optional<double> to;              ///< s
   const shoal_object* values = nullptr;  ///< of section_table("reference")

@@ -198,6 +198,10 @@ const shoal_type& reference_table() {
           "Largest error with which the case passes.", "5 %"),
       row(SHOAL_REAL, "scale", nullptr, positive, nullptr,
           "What differences are divided by instead, in SI units.", "1000"),
+      row(SHOAL_REAL, "average", "s", positive, nullptr,
+          "Window about each time over which the probe is averaged, where the data are means of such "
+          "windows.",
+          "20 ms"),
       row(SHOAL_REAL, "from", "s", not_negative, "0", "Times before are not compared.", "0.1 s"),
       row(SHOAL_REAL, "to", "s", positive, nullptr, "Times after are not compared.", "1 s"),
   };

@@ -38,6 +38,7 @@ ReferenceSpecification specification_of(const ReferenceModel& model) {
   specification.time_shift = model.time_shift;
   specification.value_scale = model.value_scale;
   specification.value_shift = model.value_shift;
+  specification.average = model.average.value_or(0.0);
   if (model.exact) {
     specification.exact_text = model.exact->text();
     specification.exact = [exact = *model.exact](double t) {

@@ -179,6 +179,21 @@ double time_mean(const Series& series) {
   return sum / (series.times.back() - series.times.front());
 }
 
+// Each value becomes the mean of all within half a window before and behind; a NaN stays one and counts nowhere else.
+Series averaged(const Series& series, double window) {
+  Series smooth = series;
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < series.times.size(); ++k) {
+    const double half = 0.5 * window * (1.0 + 1e-9);
+    while (series.times[first] < series.times[k] - half) ++first;
+    double sum = 0.0, n = 0.0;
+    for (std::size_t j = first; j < series.times.size() && series.times[j] <= series.times[k] + half; ++j)
+      if (!std::isnan(series.values[j])) sum += series.values[j], n += 1.0;
+    if (!std::isnan(series.values[k])) smooth.values[k] = sum / n;
+  }
+  return smooth;
+}
+
 // The one number of a series that `arrival` or `period` compare; nothing if it has none.
 std::optional<double> time_of(ErrorMeasure measure, const Series& series, double level) {
   if (measure == ErrorMeasure::arrival) {
@@ -237,7 +252,10 @@ void check_reference(const ReferenceSpecification& specification) {
                       "' has no point between the times that are to be compared");
 }
 
-ReferenceResult compare(const ReferenceSpecification& specification, const Series& sampled, bool finished) {
+ReferenceResult compare(const ReferenceSpecification& specification, const Series& as_sampled,
+                        bool finished) {
+  const Series sampled =
+      specification.average > 0.0 ? averaged(as_sampled, specification.average) : as_sampled;
   ReferenceResult result;
   result.probe = specification.probe;
   result.source =

@@ -45,7 +45,8 @@ struct ReferenceSpecification {
   ErrorMeasure measure = ErrorMeasure::rms;
   double tolerance = 0.0;
   std::optional<double> scale;  ///< what differences are divided by, instead of the above
-  double from = 0.0;            ///< s; what is before and behind is not compared
+  double average = 0.0;  ///< s; the probe is averaged over such a window about each of its times; 0: not
+  double from = 0.0;     ///< s; what is before and behind is not compared
   std::optional<double> to;
 };
 

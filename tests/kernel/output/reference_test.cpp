@@ -58,6 +58,21 @@ TEST_CASE("arrival: when half of the reference's largest value is first reached"
   CHECK(never.verdict == Verdict::fail);
 }
 
+TEST_CASE("means of windows are compared with the probe's means over such windows") {
+  // Noise of +-1 on 2 t: over windows of two seconds 1/3 of it is left in the middle, and nothing is known of a NaN.
+  const Series noisy{{0, 1, 2, 3, 4, 5}, {1, 1, 5, 5, 9, std::nan("")}};
+  ReferenceSpecification means = against("2,4\n", ErrorMeasure::max);
+  means.scale = 1.0;
+  CHECK(compare(means, noisy, true).error == doctest::Approx(1.0));
+  means.average = 2.0;
+  CHECK(compare(means, noisy, true).error == doctest::Approx(std::abs((1.0 + 5.0 + 5.0) / 3.0 - 4.0)));
+  ReferenceSpecification at_end = against("4,9\n5,10\n", ErrorMeasure::max);
+  at_end.average = 2.0;
+  const ReferenceResult last = compare(at_end, noisy, true);
+  CHECK(last.left_out == 1);
+  CHECK(last.error == doctest::Approx(std::abs((5.0 + 9.0) / 2.0 - 9.0) / 9.0));
+}
+
 TEST_CASE("period: the mean time between rises through the mean") {
   const auto wave = [](double period, double offset) {
     Series series;
