@@ -20,6 +20,12 @@ struct InternalForce : ReferenceOperator {
   Out<Vector> acceleration{"internal_acceleration", unit("m/s2"),
                            doc("Acceleration by the body's own stress."), derived};
 
+  // Of the weights of both directions, which all operators of the structure share and one of them counts.
+  bool counts_weights = false;
+  std::uint32_t bytes_per_pair() const {
+    return counts_weights ? 16 * static_cast<std::uint32_t>(dimensions() + 1) : 0;
+  }
+
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {
     structure->hourglass > 0.0 ? rows<D, true>(chunk) : rows<D, false>(chunk);

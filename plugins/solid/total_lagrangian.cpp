@@ -162,8 +162,10 @@ struct SolidBody {
     if (structure->law.api->wave_speed != nullptr)
       b.attach<WaveSpeed>("solid.wave_speed", at_stress, itself(),
                           [&](auto& op) { declare_law_fields(op, false); });
-    b.attach<InternalForce>("solid.internal_force", at_forces, reference(),
-                            [&](auto& op) { op.structure = structure; });
+    b.attach<InternalForce>("solid.internal_force", at_forces, reference(), [&](auto& op) {
+      op.structure = structure;
+      op.counts_weights = true;
+    });
     b.own_field(body, "acceleration", at_forces);
     const Vector3 g = b.gravity();
     if (g != Vector3{})
