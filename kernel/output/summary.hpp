@@ -29,7 +29,7 @@ struct Summary {
   std::string failure;                                  ///< why, if it failed
   double time = 0.0, start_time = 0.0, end_time = 0.0;  ///< s of simulated time
   std::uint64_t outer_steps = 0;                        ///< of all sessions
-  double wall_seconds = 0.0;                            ///< of this session, from the start of the program
+  double wall_seconds = 0.0;                            ///< of this run of the program, from its start
   double earlier_wall_seconds = 0.0;                    ///< of the sessions that it goes on from
   double startup_seconds = 0.0;                         ///< until the first step
   double output_seconds = 0.0;                          ///< outputs and probes
