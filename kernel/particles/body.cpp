@@ -5,6 +5,7 @@
 #include "kernel/particles/body.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 #include "kernel/particles/errors.hpp"
@@ -61,6 +62,50 @@ void Body::resize(std::uint64_t n) {
   n_owned_ = n;
   position_changed = true;
   resize_arrays();
+}
+
+namespace {
+
+// Which particle moves where, so that those that stay are 0 ... n_kept.
+struct Move {
+  std::uint64_t from, to;
+};
+
+std::vector<Move> close_gaps(std::uint64_t n, std::span<const std::uint64_t> leaving) {
+  std::vector<Move> moves;
+  const std::uint64_t n_kept = n - leaving.size();
+  std::size_t last = leaving.size();
+  std::uint64_t from = n;
+  for (const std::uint64_t gap : leaving) {
+    if (gap >= n_kept) break;
+    for (--from; last > 0 && leaving[last - 1] == from; --from) --last;
+    moves.push_back({from, gap});
+  }
+  return moves;
+}
+
+}  // namespace
+
+void Body::exchange(std::span<const std::uint64_t> leaving, std::span<const std::uint64_t> sources) {
+  const std::uint64_t n_before = n_owned_, n_kept = n_before - leaving.size();
+  const std::vector<Move> moves = close_gaps(n_before, leaving);
+  // First the copies are put aside, for their sources may leave; then the gaps are closed.
+  std::vector<std::vector<char>> copies;
+  for (const auto& field : fields_) {
+    const std::uint64_t bytes = field->bytes_per_particle();
+    char* data = static_cast<char*>(field->data());
+    std::vector<char>& copy = copies.emplace_back(sources.size() * bytes, '\0');
+    for (std::size_t k = 0; k < sources.size(); ++k)
+      if (sources[k] != no_source) std::memcpy(&copy[k * bytes], data + sources[k] * bytes, bytes);
+    for (const Move& move : moves) std::memcpy(data + move.to * bytes, data + move.from * bytes, bytes);
+  }
+  for (const Move& move : moves) ids_.integers()[move.to] = ids_.integers()[move.from];
+  resize(n_kept);
+  resize(n_kept + sources.size());
+  if (sources.empty()) return;
+  for (std::size_t f = 0; f < fields_.size(); ++f)
+    std::memcpy(static_cast<char*>(fields_[f]->data()) + n_kept * fields_[f]->bytes_per_particle(),
+                copies[f].data(), copies[f].size());
 }
 
 void Body::permute(const std::uint32_t* order) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,6 +51,11 @@ class Body {
 
   /// Room for n owned particles; those beyond the present ones are zero, with ids of their own. Drops the images.
   void resize(std::uint64_t n);
+  /// Of the owned particles those of `leaving` (ascending) go; the last ones that stay take their places. Then particles
+  /// with ids of their own join behind: copies of those of `sources`, which are counted before any has gone and may be
+  /// among the leaving, or zero where the source is no_source. Drops the images.
+  void exchange(std::span<const std::uint64_t> leaving, std::span<const std::uint64_t> sources);
+  static constexpr std::uint64_t no_source = UINT64_MAX;
   /// Owned particle k becomes what order[k] was, in all fields. Drops the images of the current configuration.
   void permute(const std::uint32_t* order);
 

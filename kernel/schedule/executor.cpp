@@ -5,6 +5,7 @@
 #include "kernel/schedule/executor.hpp"
 
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <mutex>
 
@@ -208,6 +209,55 @@ void Executor::run(OperatorRun& op, const shoal_step& step) {
   ++op.calls;
   op.particles += op.body->n_owned();
   op.pairs += op.pairs_per_call;
+  op.ticks += stopwatch.lap();
+}
+
+void Executor::check_exchange(const OperatorRun& op, const shoal_exchange& asked,
+                              const shoal_step& step) const {
+  const std::uint64_t n = op.body->n_owned();
+  const auto refuse = [&](const std::string& what) { fail(op, "exchange", SHOAL_ERROR, what, &step); };
+  for (std::uint64_t k = 0; k < asked.n_leaving; ++k) {
+    if (asked.leaving[k] >= n)
+      refuse("particle " + std::to_string(asked.leaving[k]) + " is to leave, of " + std::to_string(n));
+    if (k > 0 && asked.leaving[k] <= asked.leaving[k - 1])
+      refuse("the particles that leave are not in ascending order");
+  }
+  for (std::uint64_t k = 0; asked.sources != nullptr && k < asked.n_joining; ++k)
+    if (asked.sources[k] >= n && asked.sources[k] != Body::no_source)
+      refuse("particle " + std::to_string(asked.sources[k]) + " is to be copied, of " + std::to_string(n));
+}
+
+void Executor::fill(OperatorRun& op, const shoal_step& step, std::span<const std::uint64_t> sources) {
+  const std::uint64_t end = op.body->n_owned(), begin = end - sources.size();
+  if (Field* volume = op.body->find("volume"))
+    for (std::uint64_t i = begin; i < end; ++i)
+      if (sources[i - begin] == Body::no_source) volume->reals()[i] = std::pow(op.body->spacing, dimensions_);
+  if (op.c().fill != nullptr) {
+    std::string thrown;
+    const shoal_status status = protect(thrown, [&] { return op.c().fill(op.c().self, &step, begin, end); });
+    if (status != SHOAL_OK) fail(op, "fill", status, thrown.empty() ? take_text() : thrown, &step);
+  }
+  if (!fill_initial) return;
+  for (std::uint64_t i = begin; i < end; ++i)
+    if (sources[i - begin] == Body::no_source) fill_initial(*op.body, i, i + 1, op.written);
+}
+
+void Executor::exchange(OperatorRun& op, const shoal_step& step) {
+  bind(op);
+  shoal_exchange asked{};
+  asked.size = sizeof asked;
+  std::string thrown;
+  const shoal_status status = protect(thrown, [&] { return op.c().exchange(op.c().self, &step, &asked); });
+  if (status != SHOAL_OK) fail(op, "exchange", status, thrown.empty() ? take_text() : thrown, &step);
+  if (asked.n_leaving > 0 || asked.n_joining > 0) {
+    check_exchange(op, asked, step);
+    std::vector<std::uint64_t> sources(asked.n_joining, Body::no_source);
+    if (asked.sources != nullptr) sources.assign(asked.sources, asked.sources + asked.n_joining);
+    op.body->exchange({asked.leaving, asked.n_leaving}, sources);
+    neighbourhood_.particles_changed();
+    bind(op);
+    if (!sources.empty()) fill(op, step, sources);
+  }
   op.ticks += stopwatch.lap();
 }
 

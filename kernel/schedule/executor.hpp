@@ -6,7 +6,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "kernel/particles/errors.hpp"
 #include "kernel/schedule/neighbourhood.hpp"
@@ -18,7 +21,7 @@ namespace shoal::kernel {
 
 class Executor {
  public:
-  Executor(const Neighbourhood& neighbourhood, int dimensions, const FailureChannel& failures, bool poison)
+  Executor(Neighbourhood& neighbourhood, int dimensions, const FailureChannel& failures, bool poison)
       : neighbourhood_(neighbourhood), dimensions_(dimensions), failures_(failures), poison_(poison) {}
 
   void clear(const BodyField& what);
@@ -28,6 +31,11 @@ class Executor {
   /// Of one piece of the particles, for the report of a collapse.
   double time_step_of(const OperatorRun& op, const shoal_step& step, std::uint64_t begin,
                       std::uint64_t end) const;
+  /// Lets particles leave and join the operator's body, if it asks for it. `fill_initial(body, begin, end, written)`
+  /// gives those that copy none what the operator leaves to others.
+  using FillInitial = std::function<void(Body&, std::uint64_t, std::uint64_t, const std::vector<Field*>&)>;
+  void exchange(OperatorRun& op, const shoal_step& step);
+  FillInitial fill_initial;
   /// Hands views over if arrays, images or lists have moved since the last time.
   void bind(OperatorRun& op);
   /// After a restart, when arrays stayed but what operators derive from them may not hold.
@@ -43,12 +51,14 @@ class Executor {
 
  private:
   std::uint64_t generation() const { return neighbourhood_.generation() + epoch_; }
+  void check_exchange(const OperatorRun& op, const shoal_exchange& asked, const shoal_step& step) const;
+  void fill(OperatorRun& op, const shoal_step& step, std::span<const std::uint64_t> sources);
   void run_chunks(OperatorRun& op, const shoal_step& step);
   void reduce(OperatorRun& op, std::uint64_t chunks);
   void prepare_partials(OperatorRun& op, std::uint64_t chunks);
   std::string take_text() const;
 
-  const Neighbourhood& neighbourhood_;
+  Neighbourhood& neighbourhood_;
   int dimensions_;
   FailureChannel failures_;
   bool poison_;

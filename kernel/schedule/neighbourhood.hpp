@@ -50,6 +50,8 @@ class Neighbourhood {
   void renew();
   /// Everything from the present positions, without sorting and counting: after a restart.
   void rebuild();
+  /// Of a body that has particles joined or left. Its lists are those of before, until they are renewed.
+  void particles_changed() { ++generation_; }
   /// Changes whenever a list or a halo may have moved.
   std::uint64_t generation() const { return generation_; }
 

@@ -41,6 +41,7 @@ class Resolver {
     declare_fields();
     place_clears();
     for (const auto& op : schedule_.operators) connect(*op);
+    collect_exchanges();
     return std::move(schedule_);
   }
 
@@ -340,6 +341,17 @@ class Resolver {
     stage_of(op.loop, op.stage, attachment.name).operators.push_back(&op);
     LoopRun* loop = schedule_.find_loop(op.loop);
     if (loop != nullptr && op.c().time_step != nullptr) loop->limiters.push_back(&op);
+  }
+
+  void collect_exchanges() {
+    for (const auto& op : schedule_.operators) {
+      if (op->c().exchange == nullptr) continue;
+      if (neighbourhood_.in_reference_relation(op->body->index()))
+        throw ModelError(who(op->attachment) +
+                         " lets particles join or leave, but neighbours of that body are found once for the "
+                         "whole run, in the reference configuration; it cannot have both");
+      schedule_.exchanges.push_back(op.get());
+    }
   }
 
   Declarations& declarations_;

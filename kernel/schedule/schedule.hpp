@@ -79,6 +79,7 @@ struct Schedule {
   std::vector<std::unique_ptr<LoopRun>> loops;          ///< in the order of declaration
   std::vector<LoopRun*> top;
   StageRun initial, sample;
+  std::vector<OperatorRun*> exchanges;  ///< operators that let particles join and leave
   bool renews_in_outer_step = false;
   std::string outer_renewal;  ///< why
   std::vector<std::string> unscheduled;

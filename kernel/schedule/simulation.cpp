@@ -111,6 +111,10 @@ void Simulation::Implementation::finalise() {
       health.guard(*bodies[guard.body], *field, guard.minimum, guard.maximum);
     }
   });
+  executor.fill_initial = [this](Body& body, std::uint64_t begin, std::uint64_t end,
+                                 const std::vector<Field*>& written) {
+    set_initial_fields(body, begin, end, written);
+  };
   phase = Phase::finalised;
 }
 
@@ -145,11 +149,23 @@ void Simulation::Implementation::declare_reference_positions() {
           declarer);
 }
 
+void Simulation::Implementation::set_initial_fields(Body& body, std::uint64_t begin, std::uint64_t end,
+                                                    const std::vector<Field*>& except) const {
+  const auto d = static_cast<std::uint64_t>(body.dimensions());
+  const double* position = body.position().reals() + begin * d;
+  if (Field* reference = body.find("reference_position"))
+    std::copy(position, position + (end - begin) * d, reference->reals() + begin * d);
+  for (const InitialField& initial : specifications[body.index()].initial_fields) {
+    Field* field = body.find(initial.name);
+    if (field == nullptr || std::find(except.begin(), except.end(), field) != except.end()) continue;
+    initial.evaluate(end - begin, position, field->reals() + begin * field->components());
+  }
+}
+
 void Simulation::Implementation::set_initial_values() {
   for (std::uint32_t b = 0; b < bodies.size(); ++b) {
     Body& body = *bodies[b];
     const std::uint64_t n = body.n_owned();
-    const double* position = body.position().reals();
     if (Field* volume = body.find("volume")) {
       const std::vector<double>& given = specifications[b].volumes;
       if (given.empty())
@@ -157,10 +173,7 @@ void Simulation::Implementation::set_initial_values() {
       else
         std::copy(given.begin(), given.end(), volume->reals());
     }
-    if (Field* reference = body.find("reference_position"))
-      std::copy(position, position + n * reference->components(), reference->reals());
-    for (const InitialField& initial : specifications[b].initial_fields)
-      if (Field* field = body.find(initial.name)) initial.evaluate(n, position, field->reals());
+    set_initial_fields(body, 0, n, {});
     specifications[b].volumes = {};
   }
 }

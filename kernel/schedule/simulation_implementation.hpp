@@ -67,6 +67,8 @@ class Simulation::Implementation {
   void declare_initial_fields();
   void declare_reference_positions();
   void set_initial_values();
+  void set_initial_fields(Body& body, std::uint64_t begin, std::uint64_t end,
+                          const std::vector<Field*>& except) const;
 };
 
 }  // namespace shoal::kernel

@@ -48,12 +48,18 @@ void Stepper::run_stage(StageRun& stage, const shoal_step& step) {
   for (LoopRun* loop : stage.loops) cover(*loop, step.time, step.dt, -1.0);
 }
 
-void Stepper::run_outside(StageRun& stage) {
+shoal_step Stepper::outside(double dt) const {
   shoal_step step{};
   step.size = sizeof step;
   step.dimensions = dimensions_;
   step.time = step.parent_time = time;
+  step.dt = step.parent_dt = dt;
   step.number = outer_steps;
+  return step;
+}
+
+void Stepper::run_outside(StageRun& stage) {
+  const shoal_step step = outside(0.0);
   executor_.stopwatch.start();
   run_stage(stage, step);
 }
@@ -63,6 +69,10 @@ void Stepper::renew() {
   health_.check_positions(whereabouts());
   neighbourhood_.renew();
   renewal_ticks += executor_.stopwatch.lap();
+}
+
+void Stepper::exchange(const shoal_step& step) {
+  for (OperatorRun* op : schedule_.exchanges) executor_.exchange(*op, step);
 }
 
 void Stepper::check_health() {
@@ -94,7 +104,10 @@ void Stepper::cover(LoopRun& loop, double begin, double span, double known_limit
   loop.time = begin;
   double covered = 0.0;
   for (bool last = false; !last;) {
-    if (loop.renews_neighbours) renew();
+    if (loop.renews_neighbours) {
+      exchange(describe(loop, loop.last_dt, begin, span));
+      renew();
+    }
     const double remaining = span - covered;
     const double allowed =
         known_limit > 0.0 ? known_limit : limit(loop, describe(loop, loop.last_dt, begin, span));
@@ -131,7 +144,10 @@ void Stepper::step(double target, double span) {
   if (!(time < target)) return;
   const std::uint64_t begin = Stopwatch::now();
   executor_.stopwatch.start();
-  if (schedule_.renews_in_outer_step) renew();
+  if (schedule_.renews_in_outer_step) {
+    exchange(outside(last_dt));
+    renew();
+  }
   const double dt = outer_step(target, span);
   const double end = dt == target - time ? target : time + dt;
   for (LoopRun* loop : schedule_.top) {

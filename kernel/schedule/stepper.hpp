@@ -33,6 +33,8 @@ class Stepper {
   void run_outside(StageRun& stage);
   /// Wraps positions, checks them, and renews neighbours.
   void renew();
+  /// Before that, in a step: particles join and leave.
+  void exchange(const shoal_step& step);
   void check_health();
   /// Forgets what was measured before the first step.
   void start_timing();
@@ -48,6 +50,7 @@ class Stepper {
   void cover(LoopRun& loop, double begin, double span, double known_limit);
   void run_stage(StageRun& stage, const shoal_step& step);
   shoal_step describe(const LoopRun& loop, double dt, double parent_time, double parent_dt) const;
+  shoal_step outside(double dt) const;
   [[noreturn]] void collapse(const LoopRun& loop, const OperatorRun& op, const shoal_step& step,
                              double limit) const;
   Whereabouts whereabouts() const;

@@ -29,7 +29,7 @@ extern "C" {
 #endif
 
 #define SHOAL_ABI_MAJOR 1u
-#define SHOAL_ABI_MINOR 1u
+#define SHOAL_ABI_MINOR 2u
 #define SHOAL_ABI_MAGIC UINT64_C(0x494241204c414f48) /* the bytes "HOAL ABI" */
 
 // Whether the object that `pointer` points to is large enough to hold `member`.
@@ -292,6 +292,18 @@ enum {
   SHOAL_OPERATOR_TIME_STEP_OF_PARTICLES = 1u << 2
 };
 
+// Particles that leave the operator's body and particles that join it (since 1.2). The arrays are the operator's and
+// stay until its next call.
+typedef struct shoal_exchange {
+  uint32_t size;
+  uint32_t reserved;
+  uint64_t n_leaving;
+  const uint64_t* leaving;  // owned particles, ascending
+  uint64_t n_joining;
+  // [n_joining] owned particles, leaving or not, of which they start as copies; UINT64_MAX: of none. NULL: of none all
+  const uint64_t* sources;
+} shoal_exchange;
+
 // An operator on one body, possibly with neighbours in this and other bodies. Any callback but `run` may be NULL.
 typedef struct shoal_operator {
   uint32_t size;
@@ -319,6 +331,15 @@ typedef struct shoal_operator {
   // Since 1.1
   uint32_t bytes_per_pair;  // that the operator keeps beside its neighbour lists, for `shoal plan`
   uint32_t reserved;
+  // Since 1.2
+  // Called whenever neighbours are about to be renewed in a step, in the order of attachment: fills in which particles
+  // leave the operator's body and which join it. Neighbour lists are those of the last step. `step` is that of the loop
+  // that renews neighbours, before it has a size: dt is that of its last step.                  // [main]
+  shoal_status (*exchange)(void* self, const shoal_step* step, shoal_exchange* exchange);
+  // The particles that join are begin <= i < end; called after bind, and not if none joins. Fields of those that copy
+  // none are zero, but for the volume (spacing^D); those that this call leaves to them get the initial values of the case,
+  // as long as the operator does not name them as written. NULL if there is nothing to fill in. // [main]
+  shoal_status (*fill)(void* self, const shoal_step* step, uint64_t begin, uint64_t end);
 } shoal_operator;
 
 // ---------------------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 // reductions, and the table of C callbacks that the kernel calls.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -256,6 +257,32 @@ struct Target {
   shoal_configuration configuration = SHOAL_CURRENT;
 };
 
+// Which particles leave the operator's body and which join it, before neighbours are renewed.
+class Exchange {
+ public:
+  // Particle i leaves; each at most once.
+  void leave(std::uint64_t i) { leaving_.push_back(i); }
+  // A particle joins, with the initial values of the case, or as a copy of `source`; `fill` says what else it is.
+  void join(std::uint64_t source = UINT64_MAX) { sources_.push_back(source); }
+  std::size_t n_leaving() const { return leaving_.size(); }
+  std::size_t n_joining() const { return sources_.size(); }
+
+  void clear() {
+    leaving_.clear();
+    sources_.clear();
+  }
+  void to_c(shoal_exchange& c) {
+    std::sort(leaving_.begin(), leaving_.end());
+    c.n_leaving = leaving_.size();
+    c.leaving = leaving_.data();
+    c.n_joining = sources_.size();
+    c.sources = sources_.data();
+  }
+
+ private:
+  std::vector<std::uint64_t> leaving_, sources_;
+};
+
 class OperatorBase : public Parameterised {
  public:
   virtual ~OperatorBase() = default;
@@ -360,6 +387,7 @@ struct AttachedOperator {
   std::string name;
   std::vector<shoal_access> accesses;
   std::vector<shoal_relation_request> relations;
+  Exchange exchange;
 };
 
 template <class Op>
@@ -458,6 +486,21 @@ shoal_operator describe(std::unique_ptr<AttachedOperator<Op>> attached, std::uin
     c.load = [](void* self, const shoal_stream* stream) {
       return guarded([&] { op_of<Op>(self).load(*stream); });
     };
+  }
+  if constexpr (requires(Op & op, Exchange & exchange) { op.exchange(exchange); }) {
+    c.exchange = [](void* self, const shoal_step* step, shoal_exchange* asked) {
+      return guarded([&] {
+        auto& operator_ = *static_cast<AttachedOperator<Op>*>(self);
+        operator_.op.set_step(*step);
+        operator_.exchange.clear();
+        operator_.op.exchange(operator_.exchange);
+        operator_.exchange.to_c(*asked);
+      });
+    };
+    if constexpr (requires(Op & op) { op.fill(std::uint64_t{}, std::uint64_t{}); })
+      c.fill = [](void* self, const shoal_step*, std::uint64_t begin, std::uint64_t end) {
+        return guarded([&] { op_of<Op>(self).fill(begin, end); });
+      };
   }
   if constexpr (requires(Op & op) { op.bytes_per_pair(); }) c.bytes_per_pair = attached->op.bytes_per_pair();
   c.self = attached.release();

@@ -45,6 +45,8 @@ struct Operator {
   std::function<double(const Views&, const shoal_step&, const shoal_chunk&)> time_step;
   std::function<shoal_status(const shoal_stream&)> save, load;
   std::function<void()> destroy;
+  std::function<shoal_status(const Views&, const shoal_step&, shoal_exchange&)> exchange;
+  std::function<shoal_status(const Views&, const shoal_step&, std::uint64_t, std::uint64_t)> fill;
 
   Operator& access(const char* field, std::uint32_t mode, shoal_rank rank = SHOAL_SCALAR,
                    shoal_data_type type = SHOAL_DOUBLE) {
@@ -113,6 +115,14 @@ inline shoal_operator to_c(Operator op) {
     c.load = [](void* self, const shoal_stream* stream) { return of(self).op.load(*stream); };
   }
   c.bytes_per_pair = kept.bytes_per_pair;
+  if (kept.exchange)
+    c.exchange = [](void* self, const shoal_step* step, shoal_exchange* asked) {
+      return of(self).op.exchange(of(self).views, *step, *asked);
+    };
+  if (kept.fill)
+    c.fill = [](void* self, const shoal_step* step, std::uint64_t begin, std::uint64_t end) {
+      return of(self).op.fill(of(self).views, *step, begin, end);
+    };
   return c;
 }
 
