@@ -105,13 +105,15 @@ using WallVelocityDivergence = WallVelocityDivergenceOf<false>;
 
 // Force of the fluid on each wall particle, in N: the opposite of what the walls do to the fluid. On demand.
 // Here i is the wall's particle and j the fluid's.
-struct WallForce : PairOperator<WallForce> {
+template <bool Corrected>
+struct WallForceOf : PairOperator<WallForceOf<Corrected>> {
   In<Vector> velocity{"velocity"};
   In<Scalar> volume{"volume"};
   In<Vector> wall_normal{"normal", own_only};
   In<Scalar> wall_distance{"signed_distance", own_only};
   In<Scalar> pressure{"pressure", neighbours_only};
   In<Vector> acceleration{"acceleration", neighbours_only};
+  MatrixIf<Corrected> matrix{"pressure_matrix", neighbours_only, unit("1"), doc("Correction of gradients.")};
   Out<Vector> force{"force", derived};
 
   double reference_density = 0;  // kg/m3
@@ -130,9 +132,15 @@ struct WallForce : PairOperator<WallForce> {
         reference_density * sound_speed * approach * min(1.0, (limiter / sound_speed) * approach);
     const auto shear = 2.0 * viscosity * no_slip_factor(-dot(n, p.r_ij()), p.i(wall_distance)) * p.r() /
                        (p.r() + 0.01 * p.h());
-    return weight * (impact * p.r() * n - (p.j(pressure) + p_w) * p.r_ij() - shear * v);
+    const auto smooth = weight * gradient_scale * (impact * p.r() * n - shear * v);
+    if constexpr (Corrected)
+      return smooth - (weight * (p.j(pressure) + p_w)) * (p.j(matrix) * p.r_ij());
+    else
+      return smooth - (weight * gradient_scale * (p.j(pressure) + p_w)) * p.r_ij();
   }
-  void particle(auto i, auto sum) const { force[i] = gradient_scale * volume[i] * sum; }
+  void particle(auto i, auto sum) const { force[i] = volume[i] * sum; }
 };
+
+using WallForce = WallForceOf<false>;
 
 }  // namespace shoal::fluid

@@ -20,6 +20,7 @@ namespace shoal::fluid {
 namespace {
 
 constexpr At at_shift{"advection", "shift"};
+constexpr At at_apply_shift{"advection", "apply_shift"};
 constexpr At at_density{"advection", "density"};
 constexpr At at_filter{"advection", "filter"};
 constexpr At at_forces{"advection", "forces"};
@@ -76,7 +77,7 @@ struct FluidBody {
     b.attach<TransportShift>("fluid.transport_shift", at_shift, itself(), strength);
     if (has_walls())
       b.attach<WallTransportShift>("fluid.transport_shift.walls", at_shift, and_walls(), strength);
-    b.attach<ApplyShift>("fluid.apply_shift", at_shift, itself());
+    b.attach<ApplyShift>("fluid.apply_shift", at_apply_shift, itself());
   }
 
   void attach_density() const {
@@ -173,6 +174,7 @@ struct FluidBody {
   }
 
   // The force on a wall, for those who ask for it.
+  template <bool Corrected>
   void attach_wall_forces() const {
     for (const BodyIndex wall : walls) {
       const bool sticks = std::any_of(no_slip_walls.begin(), no_slip_walls.end(),
@@ -181,7 +183,7 @@ struct FluidBody {
       target.smoothing_kernel = itself().smoothing_kernel;
       target.smoothing_length = itself().smoothing_length;
       target.cutoff = itself().cutoff;
-      b.attach<WallForce>(
+      b.attach<WallForceOf<Corrected>>(
           "fluid.wall_force", {SHOAL_SAMPLE, "forces"}, target,
           [&](auto& op) {
             op.reference_density = density;
@@ -210,7 +212,7 @@ double expected_speed(const Wcsph& physics, const Builder& b) {
 }  // namespace
 
 void Wcsph::build(const Builder& b) {
-  b.loop("advection", {"shift", "density", "filter", "forces", "acoustic"});
+  b.loop("advection", {"shift", "apply_shift", "density", "filter", "forces", "acoustic"});
   b.loop("acoustic", at_acoustic, {"predict", "momentum", "kick", "continuity"});
   b.renew_neighbours_in("advection");
 
@@ -241,7 +243,7 @@ void Wcsph::build(const Builder& b) {
     fluid.attach_filter();
     fluid.attach_forces();
     gradient_correction ? fluid.attach_acoustic<true>() : fluid.attach_acoustic<false>();
-    fluid.attach_wall_forces();
+    gradient_correction ? fluid.attach_wall_forces<true>() : fluid.attach_wall_forces<false>();
   }
 }
 
