@@ -33,13 +33,15 @@ SHOAL_PLUGIN(fluid, "0.1.0") {
       "fluid.wall_motion",
       "Walls that move along a given path: translation and rotation as expressions of time or from a "
       "table. Take it for wave makers, rolling tanks and stirrers.");
-  add<InflowPhysics>("fluid.inflow",
-                     "A velocity given on a plane, through which new particles enter the fluid: channels, wakes, "
-                     "open channels with a free surface.",
-                     "Lastiwka, Basa, Quinlan 2009, doi:10.1002/fld.1971");
-  add<OutflowPhysics>("fluid.outflow",
-                      "A plane through which particles leave: against a given pressure, transparent to sound, or "
-                      "into nothing.",
-                      "Lastiwka, Basa, Quinlan 2009, doi:10.1002/fld.1971");
+  add<InflowPhysics>(
+      "fluid.inflow",
+      "A velocity given on a plane, through which new particles enter the fluid: channels, wakes, "
+      "open channels with a free surface.",
+      "Lastiwka, Basa, Quinlan 2009, doi:10.1002/fld.1971");
+  add<OutflowPhysics>(
+      "fluid.outflow",
+      "A plane through which particles leave: against a given pressure, transparent to sound, or "
+      "into nothing.",
+      "Lastiwka, Basa, Quinlan 2009, doi:10.1002/fld.1971");
   add<BodyForcePhysics>("fluid.body_force", "An acceleration given by expressions of place and time.");
 }

@@ -9,6 +9,7 @@
 #include "advection_step.hpp"
 #include "density.hpp"
 #include "gradient_matrix.hpp"
+#include "kinematics.hpp"
 #include "lattice.hpp"
 #include "liquid.hpp"
 #include "riemann.hpp"
@@ -243,6 +244,7 @@ void Wcsph::build(const Builder& b) {
     fluid.attach_filter();
     fluid.attach_forces();
     gradient_correction ? fluid.attach_acoustic<true>() : fluid.attach_acoustic<false>();
+    attach_kinematics(b, fluid.itself());
     gradient_correction ? fluid.attach_wall_forces<true>() : fluid.attach_wall_forces<false>();
   }
 }

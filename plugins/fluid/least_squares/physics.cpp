@@ -8,6 +8,7 @@
 #include "shoal/interfaces/equation_of_state.h"
 
 #include "../advection_step.hpp"
+#include "../kinematics.hpp"
 #include "../liquid.hpp"
 #include "course.hpp"
 #include "fit.hpp"
@@ -170,6 +171,7 @@ void LeastSquares::build(const Builder& b) {
     fluid.attach_motion();
     fluid.attach_forces();
     fluid.attach_pressure();
+    attach_kinematics(b, fluid.alone());
   }
 }
 

@@ -36,7 +36,7 @@ std::string channel(const std::string& inflow = "velocity: [U, 0]",
          "  - fluid.outflow: {bodies: [water], at: [1.5, 0], normal: [-1, 0], " +
          outflow +
          "}\n"
-         "run: {end: 0.3}\n"
+         "run: {end: 0.15}\n"
          "probes:\n"
          "  entered: {sum: {of: entered_mass, body: water}, every: 10 ms}\n"
          "  left: {sum: {of: left_mass, body: water}, every: 10 ms}\n"
@@ -76,7 +76,7 @@ TEST_CASE("inlet and outlet: the same bits on any number of threads and after re
   REQUIRE(app_test::shoal({"run", "channel.yaml", "-o", "one", "--force", "--threads", "1"}).code == 0);
   REQUIRE(app_test::shoal({"run", "channel.yaml", "-o", "two", "--force", "--threads", "2"}).code == 0);
   REQUIRE(
-      app_test::shoal({"run", "channel.yaml", "-o", "parts", "--force", "--threads", "2", "--until", "0.117"})
+      app_test::shoal({"run", "channel.yaml", "-o", "parts", "--force", "--threads", "2", "--until", "0.067"})
           .code == 0);
   REQUIRE(app_test::shoal({"resume", "parts", "--threads", "1"}).code == 0);
   for (const char* other : {"two", "parts"}) {
@@ -91,7 +91,7 @@ TEST_CASE("inlet and outlet: the same bits on any number of threads and after re
   const double before = 1000.0 * 1.5, entered = last("one", "entered");
   CHECK(last("one", "inside") == doctest::Approx(before + entered - last("one", "left")).epsilon(1e-9));
   // The inlet's flux over time, to one column of particles
-  const double given = 1000.0 * (0.3 + 0.2 / 9.0 * (1.0 - std::cos(9.0 * 0.3)));
+  const double given = 1000.0 * (0.15 + 0.2 / 9.0 * (1.0 - std::cos(9.0 * 0.15)));
   CHECK(std::abs(entered - given) < 1000.0 / 60.0);
   // As many particles as at first, to a column at either end
   CHECK(std::abs(last("one", "particles") - 60.0 * 102.0) < 121.0);
