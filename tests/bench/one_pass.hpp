@@ -30,7 +30,7 @@ struct OnePass : PairOperator<OnePass> {
   auto pair(const auto& p) const {
     const double impedance = constants.reference_density * constants.sound_speed,
                  per_impedance = 1.0 / impedance;
-    const auto weight = constants.mass / p.j(density) * p.dW_over_r();
+    const auto weight = constants.mass * reciprocal(p.j(density)) * p.dW_over_r();
     const auto v_r = dot(p.i(velocity) - p.j(velocity), p.r_ij());
     const auto jump = -v_r * p.per_r();
     const auto beta = min(1.0, max(0.0, (3.0 / constants.sound_speed) * jump));

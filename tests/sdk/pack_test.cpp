@@ -181,11 +181,43 @@ TEST_CASE("gather reads one component of an interleaved array") {
       CHECK(shoal::gather<3, 2>(base.data(), std::size_t{index[k]}) == last_of_three[k]);
     }
   }
-  const IndexPack run = IndexPack::consecutive(41);
-  for (int k = 0; k < lanes; ++k) CHECK(run[k] == 41u + static_cast<std::uint32_t>(k));
 }
 
-TEST_CASE("the inverse root is good to two units in the last place over all magnitudes") {
+template <int N, int Stride>
+void check_tuple() {
+  std::vector<double> base(Stride * 100 + 1);
+  for (std::size_t k = 0; k < base.size(); ++k) base[k] = static_cast<double>(k);
+  std::mt19937 random(N);
+  std::uint32_t index[8];
+  for (auto& i : index) i = static_cast<std::uint32_t>(random() % 100);
+  index[1] = 99;
+  Pack packs[N];
+  shoal::gather_tuple<N, Stride>(base.data(), IndexPack::load(index), packs);
+  for (int k = 0; k < lanes; ++k) {
+    double numbers[N];
+    shoal::gather_tuple<N, Stride>(base.data(), std::size_t{index[k]}, numbers);
+    for (int c = 0; c < N; ++c) {
+      CHECK(packs[c][k] == Stride * index[k] + static_cast<std::uint32_t>(c));
+      CHECK(numbers[c] == packs[c][k]);
+    }
+  }
+}
+
+TEST_CASE("gather_tuple reads numbers that lie together") {
+  check_tuple<1, 1>();
+  check_tuple<2, 2>();
+  check_tuple<3, 3>();
+  check_tuple<4, 4>();
+  check_tuple<5, 5>();
+  check_tuple<6, 6>();
+  check_tuple<7, 7>();
+  check_tuple<9, 9>();
+  check_tuple<27, 27>();
+  check_tuple<2, 5>();
+  check_tuple<4, 9>();
+}
+
+TEST_CASE("inverse root and reciprocal are good to two units in the last place over all magnitudes") {
   std::mt19937_64 random(17);
   std::uniform_real_distribution<double> mantissa(1.0, 4.0), exponent(-660.0, 660.0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -194,13 +226,18 @@ TEST_CASE("the inverse root is good to two units in the last place over all magn
     Pack x;
     for (int lane = 0; lane < lanes; ++lane)
       x.set(lane, std::ldexp(mantissa(random), static_cast<int>(exponent(random))));
-    const Pack y = inverse_sqrt(x);
-    for (int lane = 0; lane < lanes; ++lane) {
-      const long double exact = 1.0L / std::sqrt(static_cast<long double>(x[lane]));
+    const Pack root = inverse_sqrt(x), y = reciprocal(x);
+    const auto units_off = [](double value, long double exact) {
       const double unit = std::ldexp(1.0, std::ilogb(static_cast<double>(exact)) - 52);
-      worst = std::max(worst, std::abs(static_cast<double>((y[lane] - exact) / unit)));
+      return std::abs(static_cast<double>((value - exact) / unit));
+    };
+    for (int lane = 0; lane < lanes; ++lane) {
+      const auto exact = static_cast<long double>(x[lane]);
+      worst =
+          std::max({worst, units_off(root[lane], 1.0L / std::sqrt(exact)), units_off(y[lane], 1.0L / exact)});
     }
   }
   CHECK(worst <= 2.0);
   CHECK(std::isnan(inverse_sqrt(Pack(nan))[0]));
+  CHECK(std::isnan(reciprocal(Pack(nan))[0]));
 }

@@ -173,36 +173,34 @@ class LawPoint {
 
   LawPoint(const shoal_stress_block& block, int dimensions, std::uint64_t first)
       : block_(block), dimensions_(dimensions), first_(first) {
-    std::uint32_t index[SHOAL_PADDING];
     for (std::uint32_t k = 0; k < SHOAL_PADDING; ++k)
-      index[k] = static_cast<std::uint32_t>(std::min(first + k, block.n - 1));
-    indices_ = IndexPack::load(index);
+      index_[k] = static_cast<std::uint32_t>(std::min(first + k, block.n - 1));
   }
 
   double dt() const { return block_.dt; }      // s since the state was last written
   double time() const { return block_.time; }  // s
   int dimensions() const { return dimensions_; }
-  IndexPack indices() const { return indices_; }
+  IndexPack indices() const { return IndexPack::load(index_); }
   std::uint64_t first() const { return first_; }
   std::uint64_t n() const { return std::min<std::uint64_t>(lanes, block_.n - first_); }
 
-  Pack operator()(const LawScalar& field) const { return gather<1>(values(field), indices_); }
+  Pack operator()(const LawScalar& field) const { return gather<1>(values(field), indices()); }
   Mat<3, Pack> operator()(const LawTensor& field) const {
     const double* base = values(field);
     if (dimensions_ == 2) {
-      const Pack xx = gather<3, 0>(base, indices_), xy = gather<3, 1>(base, indices_);
-      const Pack yy = gather<3, 2>(base, indices_), zz = gather<1>(values(field, 1), indices_);
+      const Pack xx = gather<3, 0>(base, indices()), xy = gather<3, 1>(base, indices());
+      const Pack yy = gather<3, 2>(base, indices()), zz = gather<1>(values(field, 1), indices());
       return {xx, xy, 0.0, xy, yy, 0.0, 0.0, 0.0, zz};
     }
-    const Pack xx = gather<6, 0>(base, indices_), xy = gather<6, 1>(base, indices_);
-    const Pack xz = gather<6, 2>(base, indices_), yy = gather<6, 3>(base, indices_);
-    const Pack yz = gather<6, 4>(base, indices_), zz = gather<6, 5>(base, indices_);
+    const Pack xx = gather<6, 0>(base, indices()), xy = gather<6, 1>(base, indices());
+    const Pack xz = gather<6, 2>(base, indices()), yy = gather<6, 3>(base, indices());
+    const Pack yz = gather<6, 4>(base, indices()), zz = gather<6, 5>(base, indices());
     return {xx, xy, xz, xy, yy, yz, xz, yz, zz};
   }
   Vec<3, Pack> operator()(const LawDirection& field) const {
     const double* base = values(field);
-    if (dimensions_ == 2) return {gather<2, 0>(base, indices_), gather<2, 1>(base, indices_), 0.0};
-    return gather_vec<3>(base, indices_);
+    if (dimensions_ == 2) return {gather<2, 0>(base, indices()), gather<2, 1>(base, indices()), 0.0};
+    return gather_vec<3>(base, indices());
   }
 
   // The new state, kept when the step is made. May be set again: the last value counts.
@@ -251,7 +249,7 @@ class LawPoint {
   const shoal_stress_block& block_;
   int dimensions_;
   std::uint64_t first_;
-  IndexPack indices_;
+  std::uint32_t index_[SHOAL_PADDING];
   std::array<Pack, most_numbers> numbers_;
   std::array<Fresh, most_numbers> fresh_;
   std::size_t n_fresh_ = 0;

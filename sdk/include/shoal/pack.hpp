@@ -105,6 +105,8 @@ struct Pack {
   friend Pack sqrt(Pack a) { return from_raw(simd::sqrt(a.v)); }
   /// 1 / sqrt(a) for positive normal a, within 2 units in the last place.
   friend Pack inverse_sqrt(Pack a) { return from_raw(simd::inverse_sqrt(a.v)); }
+  /// 1 / a for normal a, within 2 units in the last place and at a third of a division's cost.
+  friend Pack reciprocal(Pack a) { return from_raw(simd::reciprocal(a.v)); }
 
   /// Sum of all lanes in one fixed order: the upper half is added to the lower half until one lane is left,
   /// ((0+4)+(2+6)) + ((1+5)+(3+7)) for 8 lanes, (0+2)+(1+3) for 4.
@@ -145,30 +147,34 @@ struct Pack {
   }
 };
 
-/// One 32-bit index per lane.
+/// One 32-bit index per lane: a view of `lanes` indices in memory, which must live as long.
 struct IndexPack {
-  simd::RawIndex v;
+  const std::uint32_t* lane;
 
-  static IndexPack from_raw(simd::RawIndex raw) {
-    IndexPack p;
-    p.v = raw;
-    return p;
-  }
-  /// Reads `lanes` indices; no alignment is needed.
-  static IndexPack load(const std::uint32_t* p) { return from_raw(simd::load_index(p)); }
-  /// first, first + 1, ...
-  static IndexPack consecutive(std::uint32_t first) {
-    std::uint32_t x[simd::lanes];
-    for (std::uint32_t& lane : x) lane = first++;
-    return load(x);
-  }
-  std::uint32_t operator[](int lane) const { return simd::get_index(v, lane); }
+  /// No alignment is needed.
+  static IndexPack load(const std::uint32_t* p) { return {p}; }
+  std::uint32_t operator[](int k) const { return lane[k]; }
 };
 
 /// base[index * Stride + Component] in each lane. index * Stride must stay below 2^31.
 template <int Stride = 1, int Component = 0>
 inline Pack gather(const double* base, IndexPack index) {
-  return Pack::from_raw(simd::gather<Stride>(base + Component, index.v));
+  return Pack::from_raw(simd::gather<Stride>(base + Component, simd::load_index(index.lane)));
+}
+
+/// base[index * Stride + k], k = 0 ... N - 1, in each lane. May read one number behind the last one asked for, so the
+/// array must be longer by one (all fields are, see SHOAL_PADDING).
+template <int N, int Stride = N>
+inline void gather_tuple(const double* base, IndexPack index, Pack* out) {
+  if constexpr (N == 1) {
+    out[0] = gather<Stride>(base, index);
+  } else {
+    constexpr int n = N < 4 ? N : 4;
+    simd::Raw raw[n];
+    simd::gather_tuple<n, Stride>(base, index.lane, raw);
+    for (int k = 0; k < n; ++k) out[k] = Pack::from_raw(raw[k]);
+    if constexpr (N > n) gather_tuple<N - n, Stride>(base + n, index, out + n);
+  }
 }
 
 /// Lanes 0 ... n-1 (none if n <= 0, all if n >= lanes).
@@ -185,6 +191,7 @@ inline constexpr double max(double a, double b) { return a > b ? a : b; }
 inline double abs(double a) { return std::fabs(a); }
 inline double sqrt(double a) { return std::sqrt(a); }
 inline double inverse_sqrt(double a) { return 1.0 / std::sqrt(a); }
+inline double reciprocal(double a) { return 1.0 / a; }
 inline double exp(double a) { return std::exp(a); }
 inline double log(double a) { return std::log(a); }
 inline double pow(double a, double b) { return std::pow(a, b); }
@@ -198,6 +205,10 @@ inline constexpr bool all(bool m) { return m; }
 template <int Stride = 1, int Component = 0>
 inline double gather(const double* base, std::size_t index) {
   return base[index * Stride + Component];
+}
+template <int N, int Stride = N>
+inline void gather_tuple(const double* base, std::size_t index, double* out) {
+  for (int k = 0; k < N; ++k) out[k] = base[index * Stride + std::size_t(k)];
 }
 
 /// What a generic function needs to know of its real type: how many numbers it holds, its truth type, its index.

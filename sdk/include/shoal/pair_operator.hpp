@@ -140,15 +140,13 @@ class Pair {
   Mat<D, R> j(const Field<Matrix, Writable>& field) const {
     return gather_mat<D>(field.of_neighbours(relation_), j_);
   }
-  // All numbers of an array; those that are not used are not gathered.
+  // All numbers of an array.
   template <int N2, int N3, bool Writable>
   auto j(const Field<Array<N2, N3>, Writable>& field) const {
     constexpr int n = D == 2 ? N2 : N3;
-    const double* values = field.of_neighbours(relation_);
-    return [&]<int... k>(std::integer_sequence<int, k...>) {
-      return std::array<R, n>{gather<n, k>(values, j_)...};
-    }
-    (std::make_integer_sequence<int, n>{});
+    std::array<R, n> values;
+    gather_tuple<n>(field.of_neighbours(relation_), j_, values.data());
+    return values;
   }
 
  private:
@@ -297,7 +295,7 @@ class PairOperator : public OperatorBase {
     } else {
       for (std::uint32_t m = 0; m < n; m += lanes) {
         const Pair<D, R, Kernel> p(kernel, k, i, x_i, x_of_neighbours, IndexPack::load(row + m));
-        pair_loop::add_lanes(sum, value_of(p, k, first + m), first_lanes(static_cast<std::int64_t>(n) - m));
+        pair_loop::add_lanes(sum, value_of(p, k, first + m), first_lanes(n - m));
       }
     }
   }

@@ -311,40 +311,30 @@ Mat<D> horizontal_sum(const Mat<D, R>& a) {
   return r;
 }
 
-namespace detail {
-template <int N, int K, class Index, class R>
-inline void gather_components(const double* base, Index index, R* out) {
-  if constexpr (K < N) {
-    out[K] = shoal::gather<N, K>(base, index);
-    gather_components<N, K + 1>(base, index, out);
-  }
-}
-}  // namespace detail
-
 /// The vectors base[index * D ... + D - 1] of an interleaved array, one per lane.
 template <int D>
 inline Vec<D, Pack> gather_vec(const double* base, IndexPack index) {
   Vec<D, Pack> r;
-  detail::gather_components<D, 0>(base, index, r.e);
+  gather_tuple<D>(base, index, r.e);
   return r;
 }
 template <int D>
 inline Vec<D> gather_vec(const double* base, std::size_t index) {
   Vec<D> r;
-  detail::gather_components<D, 0>(base, index, r.e);
+  gather_tuple<D>(base, index, r.e);
   return r;
 }
 /// The matrices base[index * D * D ...] of an array of matrices, one per lane.
 template <int D>
 inline Mat<D, Pack> gather_mat(const double* base, IndexPack index) {
   Mat<D, Pack> r;
-  detail::gather_components<D * D, 0>(base, index, r.e);
+  gather_tuple<D * D>(base, index, r.e);
   return r;
 }
 template <int D>
 inline Mat<D> gather_mat(const double* base, std::size_t index) {
   Mat<D> r;
-  detail::gather_components<D * D, 0>(base, index, r.e);
+  gather_tuple<D * D>(base, index, r.e);
   return r;
 }
 

@@ -8,6 +8,7 @@
 // uninitialised variables inside the unmasked ones; the code they give is the same.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -42,7 +43,7 @@ inline Raw min(Raw a, Raw b) { return _mm512_maskz_min_pd(full_mask, a, b); }
 inline Raw max(Raw a, Raw b) { return _mm512_maskz_max_pd(full_mask, a, b); }
 inline Raw sqrt(Raw a) { return _mm512_maskz_sqrt_pd(full_mask, a); }
 // From 14 bits by two steps of Newton's rule: within 2 units in the last place at a third of the time of root and
-// division, which are what pair loops wait for.
+// division, which are what pair loops wait for. The same for 1 / a.
 inline constexpr bool fast_inverse_sqrt = true;
 inline Raw inverse_sqrt(Raw a) {
   const Raw one = broadcast(1.0), half = broadcast(0.5);
@@ -51,6 +52,12 @@ inline Raw inverse_sqrt(Raw a) {
     const Raw rest = _mm512_fnmadd_pd(a * y, y, one);  // 1 - a y^2
     y = _mm512_fmadd_pd(half * y, rest, y);
   }
+  return y;
+}
+inline Raw reciprocal(Raw a) {
+  const Raw one = broadcast(1.0);
+  Raw y = _mm512_maskz_rcp14_pd(full_mask, a);
+  for (int k = 0; k < 2; ++k) y = _mm512_fmadd_pd(y, _mm512_fnmadd_pd(a, y, one), y);
   return y;
 }
 inline Raw abs(Raw a) {
@@ -68,23 +75,58 @@ inline RawMask mask_or(RawMask a, RawMask b) { return static_cast<RawMask>(a | b
 inline RawMask mask_not(RawMask a) { return static_cast<RawMask>(a ^ full_mask); }
 inline bool mask_any(RawMask a) { return a != 0; }
 inline bool mask_lane(RawMask a, int k) { return ((a >> k) & 1) != 0; }
-inline RawMask first_lanes(std::int64_t n) {
-  if (n <= 0) return 0;
-  return n >= lanes ? full_mask : static_cast<RawMask>((1u << n) - 1u);
+inline RawMask first_lanes(std::int64_t n) {  // without branches: where a row ends is hard to foresee
+  return static_cast<RawMask>(
+      _bzhi_u32(full_mask, static_cast<unsigned>(std::clamp<std::int64_t>(n, 0, lanes))));
 }
 
 inline RawIndex load_index(const std::uint32_t* p) {
   return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
 }
-inline std::uint32_t get_index(RawIndex a, int k) {
-  alignas(32) std::uint32_t x[lanes];
-  _mm256_store_si256(reinterpret_cast<__m256i*>(x), a);
-  return x[k];
-}
+// A gather merges into its register and so waits for what was in it. The compiler, which sees a full mask, leaves there
+// what comes its way, e.g. the end of the last root; zeros that it cannot see through cost nothing (measured: pairs take
+// two thirds of the time).
 template <int Stride>
 inline Raw gather(const double* base, RawIndex index) {
   const __m256i scaled = Stride == 1 ? index : _mm256_mullo_epi32(index, _mm256_set1_epi32(Stride));
-  return _mm512_mask_i32gather_pd(_mm512_setzero_pd(), full_mask, scaled, base, 8);
+  Raw zero = _mm512_setzero_pd();
+  RawMask all = full_mask;
+#if defined(__GNUC__)
+  asm("" : "+v"(zero), "+Yk"(all));
+#endif
+  return _mm512_mask_i32gather_pd(zero, all, scaled, base, 8);
+}
+
+// Numbers that lie together are read together and transposed, at less than half the cost of gathering each. [a] is
+// the `N`-tuple of lane a; pairs of lanes a, a + 4 share a register.
+template <int N, int Stride>
+inline void gather_tuple(const double* base, const std::uint32_t* j, Raw* out) {
+  const auto at = [&](int lane) { return base + std::size_t{j[lane]} * Stride; };
+  if constexpr (N == 2) {
+    const auto four = [&](int a) {
+      Raw r = _mm512_maskz_loadu_pd(0x03, at(a));
+      r = _mm512_mask_broadcast_f64x2(r, 0x0C, _mm_loadu_pd(at(a + 2)));
+      r = _mm512_mask_broadcast_f64x2(r, 0x30, _mm_loadu_pd(at(a + 4)));
+      return _mm512_mask_broadcast_f64x2(r, 0xC0, _mm_loadu_pd(at(a + 6)));
+    };
+    const Raw even = four(0), odd = four(1);
+    out[0] = __builtin_shufflevector(even, odd, 0, 8, 2, 10, 4, 12, 6, 14);
+    out[1] = __builtin_shufflevector(even, odd, 1, 9, 3, 11, 5, 13, 7, 15);
+  } else {  // 3 reads a fourth number and leaves it
+    const auto two = [&](int a) {
+      return __builtin_shufflevector(_mm256_loadu_pd(at(a)), _mm256_loadu_pd(at(a + 4)), 0, 1, 2, 3, 4, 5, 6,
+                                     7);
+    };
+    const Raw a = two(0), b = two(1), c = two(2), d = two(3);
+    const Raw ab02 = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    const Raw ab13 = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+    const Raw cd02 = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
+    const Raw cd13 = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+    out[0] = __builtin_shufflevector(ab02, cd02, 0, 1, 8, 9, 4, 5, 12, 13);
+    out[1] = __builtin_shufflevector(ab13, cd13, 0, 1, 8, 9, 4, 5, 12, 13);
+    out[2] = __builtin_shufflevector(ab02, cd02, 2, 3, 10, 11, 6, 7, 14, 15);
+    if constexpr (N == 4) out[3] = __builtin_shufflevector(ab13, cd13, 2, 3, 10, 11, 6, 7, 14, 15);
+  }
 }
 
 // For pack_math.hpp. 2^n, where `shifted` is the whole number n (-1022 <= n <= 1023) plus 1.5 * 2^52.
@@ -122,6 +164,7 @@ inline Raw max(Raw a, Raw b) { return _mm256_max_pd(a, b); }
 inline Raw sqrt(Raw a) { return _mm256_sqrt_pd(a); }
 inline constexpr bool fast_inverse_sqrt = false;
 inline Raw inverse_sqrt(Raw a) { return _mm256_set1_pd(1.0) / _mm256_sqrt_pd(a); }
+inline Raw reciprocal(Raw a) { return _mm256_set1_pd(1.0) / a; }
 inline Raw abs(Raw a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
 inline double sum(Raw a) {
   const __m128d two = _mm256_castpd256_pd128(a) + _mm256_extractf128_pd(a, 1);
@@ -140,11 +183,6 @@ inline RawMask first_lanes(std::int64_t n) {
 inline RawIndex load_index(const std::uint32_t* p) {
   return _mm_loadu_si128(reinterpret_cast<const __m128i*>(p));
 }
-inline std::uint32_t get_index(RawIndex a, int k) {
-  alignas(16) std::uint32_t x[lanes];
-  _mm_store_si128(reinterpret_cast<__m128i*>(x), a);
-  return x[k];
-}
 template <int Stride>
 inline Raw gather(const double* base, RawIndex index) {
 #if defined(__AVX2__)
@@ -156,6 +194,27 @@ inline Raw gather(const double* base, RawIndex index) {
   return _mm256_setr_pd(base[std::size_t{x[0]} * Stride], base[std::size_t{x[1]} * Stride],
                         base[std::size_t{x[2]} * Stride], base[std::size_t{x[3]} * Stride]);
 #endif
+}
+
+template <int N, int Stride>
+inline void gather_tuple(const double* base, const std::uint32_t* j, Raw* out) {
+  const auto at = [&](int lane) { return base + std::size_t{j[lane]} * Stride; };
+  if constexpr (N == 2) {
+    const auto two = [&](int a) {
+      return __builtin_shufflevector(_mm_loadu_pd(at(a)), _mm_loadu_pd(at(a + 2)), 0, 1, 2, 3);
+    };
+    const Raw even = two(0), odd = two(1);
+    out[0] = _mm256_unpacklo_pd(even, odd);
+    out[1] = _mm256_unpackhi_pd(even, odd);
+  } else {  // 3 reads a fourth number and leaves it
+    const Raw a = load(at(0)), b = load(at(1)), c = load(at(2)), d = load(at(3));
+    const Raw ab02 = _mm256_unpacklo_pd(a, b), ab13 = _mm256_unpackhi_pd(a, b);
+    const Raw cd02 = _mm256_unpacklo_pd(c, d), cd13 = _mm256_unpackhi_pd(c, d);
+    out[0] = _mm256_permute2f128_pd(ab02, cd02, 0x20);
+    out[1] = _mm256_permute2f128_pd(ab13, cd13, 0x20);
+    out[2] = _mm256_permute2f128_pd(ab02, cd02, 0x31);
+    if constexpr (N == 4) out[3] = _mm256_permute2f128_pd(ab13, cd13, 0x31);
+  }
 }
 
 // For pack_math.hpp. 2^n, where `shifted` is the whole number n (-1022 <= n <= 1023) plus 1.5 * 2^52.
@@ -226,6 +285,7 @@ inline Raw inverse_sqrt(Raw a) {
   for (int k = 0; k < lanes; ++k) set_lane(a, k, 1.0 / std::sqrt(get_lane(a, k)));
   return a;
 }
+inline Raw reciprocal(Raw a) { return broadcast(1.0) / a; }
 inline Raw abs(Raw a) {
   const Long2 magnitude = {0x7FFFFFFFFFFFFFFFLL, 0x7FFFFFFFFFFFFFFFLL};
   return {{bits_to_double(bits_to_long(a.half[0]) & magnitude),
@@ -253,11 +313,14 @@ inline RawMask first_lanes(std::int64_t n) {
 }
 
 inline RawIndex load_index(const std::uint32_t* p) { return {{p[0], p[1], p[2], p[3]}}; }
-inline std::uint32_t get_index(RawIndex a, int k) { return a.lane[k]; }
 template <int Stride>
 inline Raw gather(const double* base, RawIndex index) {
   const auto at = [&](int k) { return base[std::size_t{index.lane[k]} * Stride]; };
   return {{Double2{at(0), at(1)}, Double2{at(2), at(3)}}};
+}
+template <int N, int Stride>
+inline void gather_tuple(const double* base, const std::uint32_t* j, Raw* out) {
+  for (int k = 0; k < N; ++k) out[k] = gather<Stride>(base + k, load_index(j));
 }
 
 // For pack_math.hpp. 2^n, where `shifted` is the whole number n (-1022 <= n <= 1023) plus 1.5 * 2^52.
