@@ -37,11 +37,12 @@ std::string number(double value) {
   return text;
 }
 
-// Extent along gravity of all fluid together, m.
+// Extent along gravity of all fluid together, at least one particle, m.
 double height(const Builder& b, const std::vector<BodyIndex>& bodies, const Vector3& g, double magnitude) {
-  double low = HUGE_VAL, high = -HUGE_VAL;
+  double low = HUGE_VAL, high = -HUGE_VAL, spacing = 0;
   for (const BodyIndex index : bodies) {
     const shoal_body& body = b.body(index);
+    spacing = std::max(spacing, body.spacing);
     for (int corner = 0; corner < 8; ++corner) {
       double along = 0;
       for (unsigned a = 0; a < 3; ++a)
@@ -50,7 +51,7 @@ double height(const Builder& b, const std::vector<BodyIndex>& bodies, const Vect
       high = std::max(high, along);
     }
   }
-  return high - low;
+  return std::max(high - low, spacing);
 }
 
 // What the operators of one fluid body share.
