@@ -28,7 +28,8 @@ struct Kinematics : PairOperator<Kinematics<Rank>> {
   }
   template <int D>
   void particle(Particle<D> i, const Mat<D>& dv, const Mat<D>& moment) const {
-    constexpr double least = D == 2 ? 0.01 : 0.001;  // of the determinant, 1 inside and 1/4 (2D) in a corner
+    constexpr double least =
+        D == 2 ? 0.01 : 0.001;  // of the determinant; 1/16 and 1/512 in corners of the fluid
     const Mat<D> L = determinant(moment) > least ? dv * inverse(moment) : Mat<D>{};
     if constexpr (D == 2)
       set(vorticity[i], L(1, 0) - L(0, 1));

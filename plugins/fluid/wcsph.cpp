@@ -13,6 +13,7 @@
 #include "lattice.hpp"
 #include "liquid.hpp"
 #include "riemann.hpp"
+#include "shift_carry.hpp"
 #include "velocity_filter.hpp"
 #include "viscosity.hpp"
 #include "wall.hpp"
@@ -79,6 +80,10 @@ struct FluidBody {
     b.attach<TransportShift>("fluid.transport_shift", at_shift, itself(), strength);
     if (has_walls())
       b.attach<WallTransportShift>("fluid.transport_shift.walls", at_shift, and_walls(), strength);
+    if (physics.carry_velocity) {
+      b.attach<ShiftChange>("fluid.shift_change", at_apply_shift, itself());
+      b.attach<CarryVelocity>("fluid.carry_velocity", at_apply_shift, itself());
+    }
     b.attach<ApplyShift>("fluid.apply_shift", at_apply_shift, itself());
   }
 

@@ -82,6 +82,11 @@ struct Wcsph final : Physics {
   Param<double> shift_strength{"shift_strength", "1",
                                "Factor of the shift where there is no free surface; 0: none.", non_negative,
                                default_to(0.5)};
+  Param<bool> carry_velocity{
+      "carry_velocity", nullptr,
+      "Whether the shift carries velocities along, so that it does not mix momentum. One more "
+      "pass in an advection step; take it for wakes and shear layers.",
+      default_to(false)};
 
   void build(const Builder& builder);
 };
