@@ -35,13 +35,13 @@ SHOAL_PLUGIN(fluid, "0.1.0") {
       "table. Take it for wave makers, rolling tanks and stirrers.");
   add<InflowPhysics>(
       "fluid.inflow",
-      "A velocity given on a plane, through which new particles enter the fluid: channels, wakes, "
-      "open channels with a free surface.",
+      "A velocity given on a plane, through which new particles enter a fluid of fluid.wcsph: "
+      "channels, wakes, open channels with a free surface. For flow that enters, not for tides.",
       "Lastiwka, Basa, Quinlan 2009, doi:10.1002/fld.1971");
   add<OutflowPhysics>(
       "fluid.outflow",
-      "A plane through which particles leave: against a given pressure, transparent to sound, or "
-      "into nothing.",
+      "A plane through which particles leave a fluid of fluid.wcsph: against a given pressure, "
+      "transparent to sound, or into nothing.",
       "Lastiwka, Basa, Quinlan 2009, doi:10.1002/fld.1971");
   add<BodyForcePhysics>("fluid.body_force", "An acceleration given by expressions of place and time.");
 }
