@@ -115,7 +115,7 @@ struct OutflowVelocity : Extrapolation<OutflowVelocity> {
   void end() {
     if (impedance->time == 0.0 || !(weights.result() > 0.0)) return;
     const double speed = flux.result() / weights.result();
-    if (!impedance->started) impedance->mean = speed;
+    if (impedance->started == 0.0) impedance->mean = speed;
     impedance->started = 1;
     impedance->mean += -std::expm1(-dt() / impedance->time) * (speed - impedance->mean);
     impedance->excess = speed - impedance->mean;
