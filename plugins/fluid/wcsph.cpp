@@ -7,13 +7,16 @@
 
 #include "acoustic_step.hpp"
 #include "advection_step.hpp"
+#include "central_viscosity.hpp"
 #include "density.hpp"
+#include "density_diffusion.hpp"
 #include "gradient_matrix.hpp"
 #include "kinematics.hpp"
 #include "lattice.hpp"
 #include "liquid.hpp"
 #include "riemann.hpp"
 #include "shift_carry.hpp"
+#include "surface_shift.hpp"
 #include "velocity_filter.hpp"
 #include "viscosity.hpp"
 #include "wall.hpp"
@@ -75,11 +78,21 @@ struct FluidBody {
   }
 
   void attach_shift() const {
-    if (physics.free_surface || physics.shift_strength == 0.0) return;
-    const auto strength = [&](auto& op) { op.strength = physics.shift_strength; };
-    b.attach<TransportShift>("fluid.transport_shift", at_shift, itself(), strength);
-    if (has_walls())
-      b.attach<WallTransportShift>("fluid.transport_shift.walls", at_shift, and_walls(), strength);
+    const double factor = physics.shift_strength.value_or(physics.free_surface ? 0.0 : 0.5);
+    if (factor == 0.0) return;
+    const auto strength = [&](auto& op) {
+      op.strength = factor;
+      if constexpr (requires { op.gradient_scale; }) op.gradient_scale = 1.0 / lattice.slope;
+    };
+    if (physics.free_surface) {
+      b.attach<Crowding>("fluid.crowding", at_shift, itself(), strength);
+      if (has_walls()) b.attach<WallCrowding>("fluid.crowding.walls", at_shift, and_walls(), strength);
+      b.attach<AlongSurface>("fluid.along_surface", at_shift, itself());
+    } else {
+      b.attach<TransportShift>("fluid.transport_shift", at_shift, itself(), strength);
+      if (has_walls())
+        b.attach<WallTransportShift>("fluid.transport_shift.walls", at_shift, and_walls(), strength);
+    }
     if (physics.carry_velocity) {
       b.attach<ShiftChange>("fluid.shift_change", at_apply_shift, itself());
       b.attach<CarryVelocity>("fluid.carry_velocity", at_apply_shift, itself());
@@ -132,17 +145,46 @@ struct FluidBody {
     if (g != Vector3{})
       b.attach<Gravity>("fluid.gravity", at_forces, itself(), [&](auto& op) { op.gravity = g; });
     if (viscosity == 0.0) return;
-    b.attach<ViscousForce>("fluid.viscous_force", at_forces, itself(), [&](auto& op) {
+    physics.viscous_force.value() == "morris"
+        ? attach_viscosity<ViscousForce, WallViscousForce>()
+        : attach_viscosity<CentralViscousForce, WallCentralViscousForce>();
+  }
+  template <class Force, class WallForce>
+  void attach_viscosity() const {
+    const auto setup = [&](auto& op) {
       op.viscosity = viscosity;
-      op.reference_density = density;
       op.gradient_scale = 1.0 / lattice.slope;
-    });
+      if constexpr (requires { op.reference_density; }) op.reference_density = density;
+    };
+    b.attach<Force>("fluid.viscous_force", at_forces, itself(), setup);
     if (!no_slip_walls.empty())
-      b.attach<WallViscousForce>("fluid.viscous_force.walls", at_forces, b.target(body, no_slip_walls),
-                                 [&](auto& op) {
-                                   op.viscosity = viscosity;
-                                   op.gradient_scale = 1.0 / lattice.slope;
-                                 });
+      b.attach<WallForce>("fluid.viscous_force.walls", at_forces, b.target(body, no_slip_walls), setup);
+  }
+
+  template <bool Corrected>
+  void attach_pressure_force() const {
+    const Choice kind = physics.stabilisation;
+    const auto setup = [&](auto& op) {
+      op.reference_density = density;
+      op.sound_speed = sound_speed;
+      op.gradient_scale = 1.0 / lattice.slope;
+      if constexpr (requires { op.diffusivity; }) {
+        const double ch = sound_speed * itself().smoothing_length;
+        op.diffusivity = kind == "edac" ? physics.diffusion.value_or(0.5) * ch / 8.0
+                                        : physics.diffusion.value_or(0.1) * ch;
+        op.gravity = b.gravity();
+      }
+    };
+    const auto attach = [&]<class Op>() {
+      b.attach<Op>("fluid.pressure_force", at_momentum, itself(), setup);
+    };
+    if (kind == "riemann") attach.template operator()<PressureForceOf<Corrected>>();
+    if (kind == "antuono")
+      attach.template operator()<DiffusivePressureForce<Diffusion::antuono, Corrected>>();
+    if (kind == "fourtakas")
+      attach.template operator()<DiffusivePressureForce<Diffusion::fourtakas, Corrected>>();
+    if (kind == "edac") attach.template operator()<DiffusivePressureForce<Diffusion::edac, Corrected>>();
+    if (kind == "none") attach.template operator()<DiffusivePressureForce<Diffusion::none, Corrected>>();
   }
 
   template <bool Corrected>
@@ -153,11 +195,7 @@ struct FluidBody {
       op.cfl = physics.acoustic_cfl;
       op.damping = physics.acoustic_damping;
     });
-    b.attach<PressureForceOf<Corrected>>("fluid.pressure_force", at_momentum, itself(), [&](auto& op) {
-      op.reference_density = density;
-      op.sound_speed = sound_speed;
-      op.gradient_scale = 1.0 / lattice.slope;
-    });
+    attach_pressure_force<Corrected>();
     if (has_walls())
       b.attach<WallPressureForceOf<Corrected>>("fluid.pressure_force.walls", at_momentum, and_walls(),
                                                [&](auto& op) {
@@ -170,10 +208,18 @@ struct FluidBody {
       op.limiter = physics.dissipation_limiter;
       op.gradient_scale = 1.0 / lattice.slope;
     };
-    b.attach<VelocityDivergenceOf<Corrected>>("fluid.divergence", at_continuity, itself(), [&](auto& op) {
-      riemann(op);
-      op.least = physics.least_dissipation;
-    });
+    if (physics.stabilisation.value() == "riemann")
+      b.attach<VelocityDivergenceOf<Corrected>>("fluid.divergence", at_continuity, itself(), [&](auto& op) {
+        riemann(op);
+        op.least = physics.least_dissipation;
+      });
+    else
+      b.attach<ViscousDivergence<Corrected>>("fluid.divergence", at_continuity, itself(), [&](auto& op) {
+        op.alpha = physics.artificial_viscosity;
+        op.sound_speed = sound_speed;
+        op.reference_density = density;
+        op.gradient_scale = 1.0 / lattice.slope;
+      });
     if (has_walls())
       b.attach<WallVelocityDivergenceOf<Corrected>>("fluid.divergence.walls", at_continuity, and_walls(),
                                                     riemann);

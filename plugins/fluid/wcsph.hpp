@@ -66,6 +66,37 @@ struct Wcsph final : Physics {
   Param<bool> gradient_correction{"gradient_correction", nullptr,
                                   "Whether pressure and divergence use corrected gradients.",
                                   default_to(false)};
+  Param<Choice> stabilisation{
+      "stabilisation", nullptr,
+      "What damps noise of the pressure. riemann: a low-dissipation Riemann solver, the most robust; take it "
+      "for "
+      "impacts and where in doubt. antuono: delta-SPH, diffusion of what gradients do not explain of the "
+      "density; take it for waves and long calm runs, with artificial_viscosity 0.02 for impacts. fourtakas: "
+      "the "
+      "same against the hydrostatic density, for water that is mostly at rest. edac: diffusion of the "
+      "pressure, for internal flows without gravity; take density_summation: false with it. none: only "
+      "acoustic_damping, to compare.",
+      one_of("riemann", "antuono", "fourtakas", "edac", "none"), default_to("riemann")};
+  Param<double> diffusion{
+      "diffusion",
+      "1",
+      "Strength of antuono and fourtakas (delta, 0.1 if not given) or of edac (alpha, 0.5 if not "
+      "given).",
+      non_negative,
+      optional,
+      example("0.1")};
+  Param<double> artificial_viscosity{
+      "artificial_viscosity", "1",
+      "Monaghan's alpha between approaching particles, where stabilisation is not riemann: a shear viscosity "
+      "of "
+      "alpha c h / (2 (D + 2)). 0.02 for impacts, 0 where viscosity is resolved.",
+      non_negative, default_to(0.0)};
+  Param<Choice> viscous_force{"viscous_force", nullptr,
+                              "morris: the usual form, most accurate in shear flows and at no-slip walls. "
+                              "monaghan_gingold: forces along the line "
+                              "of two particles, which keep angular momentum to rounding; take it for "
+                              "viscous fluids that turn freely.",
+                              one_of("morris", "monaghan_gingold"), default_to("morris")};
   Param<double> advection_cfl{"advection_cfl", "1", "Advection step over h / |v|.", positive,
                               default_to(0.25)};
   Param<double> acoustic_cfl{"acoustic_cfl", "1", "Acoustic step over h / (c + |v|).", positive,
@@ -79,9 +110,15 @@ struct Wcsph final : Physics {
       "Smallest factor of the Riemann solver's dissipation, from 0 (the limiter alone) to "
       "1 (an upwind scheme).",
       between(0.0, 1.0), default_to(0.0)};
-  Param<double> shift_strength{"shift_strength", "1",
-                               "Factor of the shift where there is no free surface; 0: none.", non_negative,
-                               default_to(0.5)};
+  Param<double> shift_strength{
+      "shift_strength",
+      "1",
+      "Factor of the shift that keeps particles evenly spread; 0: none. Without it 0.5 "
+      "where there is no free surface, else 0. With a free surface, 0.5 keeps negative "
+      "pressures from tearing voids; particles at the surface move along it only.",
+      non_negative,
+      optional,
+      example("0.5")};
   Param<bool> carry_velocity{
       "carry_velocity", nullptr,
       "Whether the shift carries velocities along, so that it does not mix momentum. One more "

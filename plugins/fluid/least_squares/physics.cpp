@@ -10,6 +10,8 @@
 #include "../advection_step.hpp"
 #include "../kinematics.hpp"
 #include "../liquid.hpp"
+#include "../velocity_filter.hpp"
+#include "clearance.hpp"
 #include "course.hpp"
 #include "fit.hpp"
 #include "initial.hpp"
@@ -35,6 +37,11 @@ constexpr At at_acoustic{"midpoint", "acoustic"};
 constexpr At at_wave{"acoustic", "wave"};
 constexpr At at_arrival{"midpoint", "arrival"};
 
+struct WallBody {
+  BodyIndex body;
+  bool slips;
+};
+
 // What the operators of one fluid body share.
 struct FluidBody {
   const Builder& b;
@@ -42,7 +49,7 @@ struct FluidBody {
   BodyIndex body;
   double density;    // kg/m3
   double viscosity;  // kinematic, m2/s
-  std::vector<BodyIndex> walls{};
+  std::vector<WallBody> walls{};
   CoursePointer course = std::make_shared<Course>();
 
   // Nothing drives the flow, so that steps may grow as it slows down. A driven one starts from rest in small steps.
@@ -52,7 +59,12 @@ struct FluidBody {
   // With all particles that the fits look at.
   Target target() const {
     std::vector<BodyIndex> neighbours{body};
-    neighbours.insert(neighbours.end(), walls.begin(), walls.end());
+    for (const WallBody& wall : walls) neighbours.push_back(wall.body);
+    return fitted(b.target(body, neighbours));
+  }
+  Target walls_alone() const {
+    std::vector<BodyIndex> neighbours;
+    for (const WallBody& wall : walls) neighbours.push_back(wall.body);
     return fitted(b.target(body, neighbours));
   }
   static Target fitted(Target target) {
@@ -64,18 +76,24 @@ struct FluidBody {
   // The same operator on each wall. Its fits look at the fluid around the surface, up to 2h from the wall's particle.
   template <class Op>
   void attach_at_walls(const char* name, At at) const {
-    for (const BodyIndex wall : walls) {
-      Target target = b.target(wall, {body});
-      target.smoothing_length = b.target(body).smoothing_length;
-      target = fitted(target);
-      target.cutoff *= 2.0;
-      b.attach<Op>(name, at, target, [&](auto& op) {
-        if constexpr (requires { op.course; }) {
-          op.course = course;
-          op.density = density;
-        }
-      });
-    }
+    for (const WallBody& wall : walls) attach_at_wall<Op>(name, at, wall);
+  }
+  template <class Op>
+  void attach_at_wall(const char* name, At at, const WallBody& wall) const {
+    Target target = b.target(wall.body, {body});
+    target.smoothing_length = b.target(body).smoothing_length;
+    target = fitted(target);
+    target.cutoff *= 2.0;
+    b.attach<Op>(name, at, target, [&](auto& op) {
+      if constexpr (requires { op.course; }) op.course = course;
+      if constexpr (requires { op.density; }) op.density = density;
+    });
+  }
+  template <class Of>
+  void attach_wall_velocity(const char* name, At at) const {
+    for (const WallBody& wall : walls)
+      wall.slips ? attach_at_wall<FreeSlipWallVelocity<Of>>(name, at, wall)
+                 : attach_at_wall<WallVelocity<Of>>(name, at, wall);
   }
 
   void attach_motion() const {
@@ -91,12 +109,13 @@ struct FluidBody {
     });
     b.attach<Fit>("fluid.fit", at_fit, target(),
                   [&](auto& op) { op.shift_strength = physics.shift_strength; });
+    if (!walls.empty()) b.attach<Clearance>("fluid.clearance", at_fit, walls_alone());
     attach_at_walls<WallSurface>("fluid.wall_surface", at_fit);
     attach_at_walls<WallFit>("fluid.wall_fit", at_fit);
-    attach_at_walls<WallVelocity<MidVelocity>>("fluid.wall_velocity_mid", at_fit);
+    attach_wall_velocity<MidVelocity>("fluid.wall_velocity_mid", at_fit);
     attach_at_walls<WallPressure<MidPressure>>("fluid.wall_pressure_mid", at_fit);
     b.attach<Carry>("fluid.carry", at_fit, target());
-    attach_at_walls<WallVelocity<CarriedVelocity>>("fluid.wall_carried_velocity", at_fit);
+    attach_wall_velocity<CarriedVelocity>("fluid.wall_carried_velocity", at_fit);
   }
 
   void attach_forces() const {
@@ -109,7 +128,7 @@ struct FluidBody {
       return;
     }
     b.attach<ViscousStart>("fluid.viscous_start", at_forces, alone());
-    attach_at_walls<WallVelocity<StageVelocity>>("fluid.wall_viscous_velocity", at_stage);
+    attach_wall_velocity<StageVelocity>("fluid.wall_viscous_velocity", at_stage);
     b.attach<ViscousRate>("fluid.viscous_rate", at_stage, target(), [&](auto& op) {
       op.viscosity = viscosity;
       op.density = density;
@@ -124,6 +143,7 @@ struct FluidBody {
 
   void attach_pressure() const {
     attach_at_walls<WallForceField<SpecificForce>>("fluid.wall_specific_force", at_source);
+    attach_at_walls<WallNormalForce>("fluid.wall_normal_force", at_source);
     b.attach<WaveSource>("fluid.wave_source", at_source, target(), [&](auto& op) {
       op.course = course;
       op.density = density;
@@ -139,6 +159,12 @@ struct FluidBody {
     b.attach<least_squares::PressureForce>("fluid.pressure_force", at_arrival, target(),
                                            [&](auto& op) { op.density = density; });
     b.attach<Arrival>("fluid.arrival", at_arrival, alone());
+    if (physics.velocity_filter == 0.0) return;
+    b.attach<VelocityFluctuation>("fluid.velocity_fluctuation", at_arrival, alone());
+    b.attach<VelocityFilter>("fluid.velocity_filter", at_arrival, alone(), [&](auto& op) {
+      op.strength = physics.velocity_filter;
+      op.reference_density = density;
+    });
   }
 };
 
@@ -151,11 +177,12 @@ void LeastSquares::build(const Builder& b) {
   b.loop("acoustic", at_acoustic, {"wave"});
   b.renew_neighbours_in("midpoint");
 
-  for (const BodyIndex wall : walls.value())
-    if (b.material<Wall>(wall, "fluid.wall")->slip.value() != "no_slip")
-      throw CaseError(std::string("fluid.least_squares has no-slip walls only, but wall '") +
-                      b.body(wall).name +
-                      "' has slip: free_slip; take fluid.wcsph, or a mirror face of the domain");
+  std::vector<WallBody> wall_bodies;
+  for (const BodyIndex wall : walls.value()) {
+    wall_bodies.push_back({wall, b.material<Wall>(wall, "fluid.wall")->slip.value() == "free_slip"});
+    b.attach<SurfaceMotion>("fluid.surface_motion", {SHOAL_INITIAL, "state"},
+                            FluidBody::fitted(b.target(wall)));
+  }
   for (const BodyIndex body : bodies.value()) {
     const auto eos = b.material_interface<shoal_equation_of_state>(body, SHOAL_EQUATION_OF_STATE,
                                                                    SHOAL_EQUATION_OF_STATE_REVISION);
@@ -164,7 +191,7 @@ void LeastSquares::build(const Builder& b) {
                       "' needs a material with a density and a viscosity, e.g. material: {fluid.liquid: "
                       "{density: 1000, viscosity: 1e-3}}");
     const double density = eos.api->reference_density(eos.self);
-    const FluidBody fluid{b, *this, body, density, eos.api->viscosity(eos.self) / density, walls.value()};
+    const FluidBody fluid{b, *this, body, density, eos.api->viscosity(eos.self) / density, wall_bodies};
     b.body_moves(body);
     b.attach<InitialMass>("fluid.initial_mass", {SHOAL_INITIAL, "state"}, fluid.alone(),
                           [&](auto& op) { op.reference_density = density; });

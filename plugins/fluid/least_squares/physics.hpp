@@ -23,7 +23,9 @@ struct LeastSquares final : Physics {
   Param<std::vector<BodyIndex>> bodies{"bodies", nullptr, "Bodies of fluid, each of material fluid.liquid.",
                                        example("[water]")};
   Param<std::vector<BodyIndex>> walls{
-      "walls", nullptr, "No-slip bodies of material fluid.wall that bound the fluid, four layers thick.",
+      "walls", nullptr,
+      "Bodies of material fluid.wall that bound the fluid, four layers thick. They may slide "
+      "or turn with given velocities.",
       optional, example("[tank]")};
   Param<double> max_speed{"max_speed", "m/s",
                           "Largest speed that the flow will reach; with `mach` it sets the speed of sound.",
@@ -48,6 +50,13 @@ struct LeastSquares final : Physics {
       "Bulk viscosity over c dx, which damps waves of the pressure. Too little and they grow "
       "as particles move.",
       non_negative, default_to(0.2)};
+  Param<double> velocity_filter{
+      "velocity_filter", "1",
+      "Strength of a filter that damps what particles do beyond the smooth flow around them. Take 0.1 where "
+      "particles do not resolve the shear, |v| dx / nu > 10 about; 0, none, where they do: it costs "
+      "accuracy. Stable "
+      "below 0.8.",
+      between(0.0, 0.8), default_to(0.0)};
   Param<double> shift_strength{"shift_strength", "1",
                                "Factor of the shift that keeps particles evenly spread.", non_negative,
                                default_to(0.5)};

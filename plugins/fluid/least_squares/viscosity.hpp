@@ -63,6 +63,10 @@ struct ViscousRate : PairOperator<ViscousRate> {
 struct LegendreStage {
   double mu, nu, mu_rate, gamma_rate;
 
+  // Time of the velocities after stage j, in steps.
+  static double time(int j, int s) {
+    return j == 0 ? 0.0 : j == 1 ? 4.0 / (3.0 * (s * s + s - 2.0)) : (j * j + j - 2.0) / (s * s + s - 2.0);
+  }
   static double b(int j) { return j < 2 ? 1.0 / 3.0 : (j * j + j - 2.0) / (2.0 * j * (j + 1.0)); }
   static LegendreStage of(int j, int s) {
     const double w1 = 4.0 / (s * s + s - 2.0);
