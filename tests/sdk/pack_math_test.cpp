@@ -117,4 +117,16 @@ TEST_CASE("relaxation is exact to 5 ulp, and 1 at z = 0") {
   CHECK(shoal::relaxation(1e6).decay == 0.0);
   CHECK(shoal::relaxation(1e6).mean == 1e-6);
   CHECK(std::isnan(shoal::relaxation(not_a_number).mean));
+  CHECK(std::isnan(shoal::relaxation(Pack(not_a_number)).mean[1]));
+}
+
+TEST_CASE("a lane of relaxation does not depend on the other lanes") {
+  // Packs of small arguments alone take a shorter way.
+  for (const double small : {1e-3, -0.2, 0.3}) {
+    Pack mixed(small);
+    mixed.set(1, 30.0);
+    const auto alone = shoal::relaxation(Pack(small)), together = shoal::relaxation(mixed);
+    CHECK(alone.mean[0] == together.mean[0]);
+    CHECK(alone.decay[0] == together.decay[0]);
+  }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "shoal/pack.hpp"
 #include "shoal/pack_math.hpp"
@@ -15,13 +16,18 @@ constexpr std::uint64_t padded(std::uint64_t n) {
   return (n + SHOAL_PADDING - 1) / SHOAL_PADDING * SHOAL_PADDING;
 }
 
-// An array for each variable.
+// An array for each variable, aligned: packs that cross lines of the cache are stored at a quarter of the speed.
 class Columns {
  public:
+  // n a multiple of SHOAL_PADDING.
   void resize(std::size_t n_variables, std::uint64_t n) {
-    values_.resize(n_variables * n);
+    if (values_.size() == n_variables * n + SHOAL_PADDING) return;
+    values_.resize(n_variables * n + SHOAL_PADDING);
     pointers_.resize(n_variables);
-    for (std::size_t v = 0; v < n_variables; ++v) pointers_[v] = values_.data() + v * n;
+    void* begin = values_.data();
+    std::size_t room = values_.size() * sizeof(double);
+    std::align(SHOAL_PADDING * sizeof(double), n_variables * n * sizeof(double), begin, room);
+    for (std::size_t v = 0; v < n_variables; ++v) pointers_[v] = static_cast<double*>(begin) + v * n;
   }
   double* operator[](std::size_t v) const { return pointers_[v]; }
   double* const* all() const { return pointers_.data(); }
@@ -54,8 +60,8 @@ ReactionIntegrator::ReactionIntegrator(Interface<shoal_reaction_model> model, bo
     : model_(model), adaptive_(adaptive) {
   n_ = model_.api->variables(model_.self, &variables_);
   if (n_ == 0) throw shoal::impl::HostFailed(SHOAL_CASE_ERROR);
-  // The scratch of a block stays in the nearest caches.
-  block_ = n_ <= 4 ? 256 : 64;
+  // The scratch of a block, five numbers for each variable, stays in the nearest cache.
+  block_ = std::clamp<std::uint64_t>(32768 / (5 * sizeof(double) * n_) / 8 * 8, 16, 256);
 }
 
 void ReactionIntegrator::advance(int dimensions, double t, double dt, std::uint64_t n, const double* position,
@@ -82,7 +88,8 @@ void ReactionIntegrator::step(Work& w, int dimensions, double t, double dt, std:
   for (std::size_t v = 0; v < n_; ++v) {
     for (std::uint64_t i = 0; i < n; i += width) {
       const Pack start = Pack::load(y[v] + i), p = Pack::load(w.p[v] + i);
-      const Pack change = 0.5 * dt * (Pack::load(w.q[v] + i) - p * start) / (1.0 + 0.5 * dt * max(0.0, p));
+      const Pack change =
+          0.5 * dt * (Pack::load(w.q[v] + i) - p * start) * reciprocal(1.0 + 0.5 * dt * max(0.0, p));
       (start + change).store(w.middle[v] + i);
       (start + 2.0 * change).store(w.end[v] + i);
     }

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "shoal/pack.hpp"
 
@@ -45,61 +46,70 @@ inline double split_exponent(double x, double& mantissa) {
 // ln 2 as a sum of two numbers, the first of which has so few digits that its products with exponents are exact.
 inline constexpr double ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;
 
-// e^x = 2^n (1 + r q) with |r| <= ln(2) / 2, q = (e^r - 1) / r by its Taylor series up to r^12 / 13!, whose remainder
-// is below 5e-18.
+// e^x = 2^n (1 + r q) with |r| <= ln(2) / 2, q = (e^r - 1) / r: 1 + r / 2 + r^2 g, g a polynomial that interpolates at
+// the roots of Chebyshev's; the error of 1 + r q is below 3e-17.
 template <Real R>
 struct Exponential {
-  R power;  // 2^(n-1), so that the largest results do not overflow half way
-  R r, q;
-  typename RealTraits<R>::MaskType is_small;  // n = 0
+  R n, r, q;
+  R shifted;  // n + 1.5 * 2^52
 
-  // -707 <= x <= 709.8.
-  explicit Exponential(R x) {
+  // Of x <= 710.
+  [[gnu::always_inline]] explicit Exponential(R x) {
     const R shift(0x1.8p52);
-    const R shifted = x * R(1.4426950408889634) + shift;
-    const R n = shifted - shift;
+    shifted = x * R(1.4426950408889634) + shift;
+    n = shifted - shift;
     r = (x - n * R(ln2_high)) - n * R(ln2_low);
-    power = power_of_two(shifted - R(1.0));
-    is_small = n == R(0.0);
     const R r2 = r * r, r4 = r2 * r2, r8 = r4 * r4;
     const auto pair = [&](double a, double b) { return R(a) + r * R(b); };
-    const R low = (pair(1.0, 1.0 / 2) + r2 * pair(1.0 / 6, 1.0 / 24)) +
-                  r4 * (pair(1.0 / 120, 1.0 / 720) + r2 * pair(1.0 / 5040, 1.0 / 40320));
-    const R high = (pair(1.0 / 362880, 1.0 / 3628800) + r2 * pair(1.0 / 39916800, 1.0 / 479001600)) +
-                   r4 * R(1.0 / 6227020800.0);
+    const R low = (pair(1.0, 0.5) + r2 * pair(0x1.5555555555555p-3, 0x1.5555555554cb7p-5)) +
+                  r4 * (pair(0x1.1111111110e6ap-7, 0x1.6c16c1738ff55p-10) +
+                        r2 * pair(0x1.a01a01a4b322fp-13, 0x1.a019c9a5652d3p-16));
+    const R high = pair(0x1.71de17e40edfep-19, 0x1.2880411bad1aap-22) + r2 * R(0x1.af236aac51d05p-26);
     q = low + r8 * high;
   }
-  R value() const { return (power + power * (r * q)) * R(2.0); }
+  typename RealTraits<R>::MaskType is_small() const { return n == R(0.0); }
+  // e^r
+  [[gnu::always_inline]] R near_one() const { return R(1.0) + r * q; }
+  // 2^n times that: infinity above x = 709.78, not to be used below -707.
+  [[gnu::always_inline]] R scaled(R x) const {
+    if constexpr (simd::fast_scale && !std::is_same_v<R, double>)
+      return R::from_raw(simd::scale(x.v, n.v));
+    else  // in two parts, as 2^1024 would overflow
+      return x * power_of_two(shifted - R(1.0)) * R(2.0);
+  }
+  [[gnu::always_inline]] R value() const { return scaled(near_one()); }
 };
+
+inline constexpr double smallest_argument = -707.0, largest_argument = 709.78271289338397;
 
 // NaN stays: the second argument of min and max is taken where the two are unordered.
 template <Real R>
-R within(double low, double high, R x) {
-  return min(R(high), max(R(low), x));
+[[gnu::always_inline]] inline R exponential_of(R x) {
+  if constexpr (simd::fast_scale && !std::is_same_v<R, double>) {
+    return select(x < R(smallest_argument), R(0.0), Exponential<R>(min(R(710.0), x)).value());
+  } else {
+    const R e = Exponential<R>(min(R(largest_argument), max(R(smallest_argument), x))).value();
+    const R flushed = select(x < R(smallest_argument), R(0.0), e);
+    return select(x > R(largest_argument), R(std::numeric_limits<double>::infinity()), flushed);
+  }
 }
-
-inline constexpr double smallest_argument = -707.0, largest_argument = 709.78271289338397;
 
 }  // namespace pack_math
 
 /// e^x; 0 below x = -707 (no denormal numbers), infinity above 709.78.
 template <Real R>
-inline R fast_exp(R x) {
-  const R e = pack_math::Exponential<R>(
-                  pack_math::within(pack_math::smallest_argument, pack_math::largest_argument, x))
-                  .value();
-  const R flushed = select(x < R(pack_math::smallest_argument), R(0.0), e);
-  return select(x > R(pack_math::largest_argument), R(std::numeric_limits<double>::infinity()), flushed);
+[[gnu::always_inline]] inline R fast_exp(R x) {
+  return pack_math::exponential_of(x);
 }
 
 /// Natural logarithm; -infinity at 0 (and of denormal numbers), NaN below.
 template <Real R>
-inline R fast_log(R x) {
+[[gnu::always_inline]] inline R fast_log(R x) {
   R m;
   const R n = pack_math::split_exponent(x, m);
   // log m = 2 artanh s, s = (m - 1) / (m + 1), |s| <= 0.1716: the series up to s^21, remainder below 1e-18. The part
   // f - s f that follows from s alone is exact near m = 1.
-  const R f = m - R(1.0), s = f / (R(2.0) + f), s2 = s * s, s4 = s2 * s2;
+  const R f = m - R(1.0), s = f * reciprocal(R(2.0) + f), s2 = s * s, s4 = s2 * s2;
   const auto pair = [&](int k) { return R(2.0 / k) + s2 * R(2.0 / (k + 2)); };
   const R series = s2 * (pair(3) + s4 * (pair(7) + s4 * (pair(11) + s4 * (pair(15) + s4 * pair(19)))));
   const R half_square = R(0.5) * f * f;
@@ -119,13 +129,16 @@ struct Relaxation {
   R decay, mean;
 };
 template <Real R>
-inline Relaxation<R> relaxation(R z) {
-  const R argument = pack_math::within(pack_math::smallest_argument, pack_math::largest_argument, R(0.0) - z);
-  const pack_math::Exponential<R> e(argument);
-  const R decay = select(z > R(-pack_math::smallest_argument), R(0.0), e.value());
+[[gnu::always_inline]] inline Relaxation<R> relaxation(R z) {
+  const pack_math::Exponential<R> e(
+      min(R(pack_math::largest_argument), max(R(pack_math::smallest_argument), R(0.0) - z)));
+  const auto is_small = e.is_small();
+  const R near_one = e.near_one();
+  if (all(is_small)) return {near_one, e.q};  // as below
+  const R decay = select(z > R(-pack_math::smallest_argument), R(0.0), e.scaled(near_one));
   // z is never zero where the quotient is taken.
-  const R divisor = select(e.is_small, R(1.0), z);
-  return {decay, select(e.is_small, e.q, (R(1.0) - decay) / divisor)};
+  const R divisor = select(is_small, R(1.0), z);
+  return {decay, select(is_small, e.q, (R(1.0) - decay) * reciprocal(divisor))};
 }
 
 }  // namespace SHOAL_ISA_NAMESPACE

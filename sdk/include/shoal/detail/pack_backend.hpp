@@ -142,6 +142,9 @@ inline Raw split_exponent(Raw x, Raw& mantissa) {
   const Raw shift = broadcast(0x1.8p52);
   return _mm512_castsi512_pd(biased + _mm512_castpd_si512(shift)) - (shift + broadcast(1023.0));
 }
+// a 2^n for whole n; infinity and 0 where that is out of range.
+inline constexpr bool fast_scale = true;
+inline Raw scale(Raw a, Raw n) { return _mm512_maskz_scalef_pd(full_mask, a, n); }
 
 #elif defined(__AVX__)
 
@@ -230,6 +233,8 @@ inline Raw split_exponent(Raw x, Raw& mantissa) {
   const Raw shift = broadcast(0x1.8p52);
   return _mm256_castsi256_pd(biased + _mm256_castpd_si256(shift)) - (shift + broadcast(1023.0));
 }
+inline constexpr bool fast_scale = false;
+inline Raw scale(Raw a, Raw) { return a; }
 
 #else  // two vectors of 16 bytes: SSE2, NEON and their like; wider vectors would change the calling convention
 
@@ -344,6 +349,8 @@ inline Raw split_exponent(Raw x, Raw& mantissa) {
   }
   return n;
 }
+inline constexpr bool fast_scale = false;
+inline Raw scale(Raw a, Raw) { return a; }
 
 #endif
 

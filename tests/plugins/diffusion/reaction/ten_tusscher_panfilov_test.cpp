@@ -35,6 +35,7 @@ struct ActionPotential {
 ActionPotential pace(const char* cell, double dt, int beats) {
   TenTusscherPanfilov model;
   model.cell = Choice{cell};
+  model.check();
   const ReactionIntegrator integrator(interface_of(model));
   Cells cells(integrator, 1);
   ActionPotential out{};
@@ -63,6 +64,7 @@ TEST_CASE("rates in packs and in numbers equal those of the equations written ou
   for (const char* cell : {"epi", "endo", "mid"}) {
     TenTusscherPanfilov model;
     model.cell = Choice{cell};
+    model.check();
     const State rest = at_rest(model);
     for (double v = -0.1; v < 0.061; v += 0.0027) {
       State y = rest;
