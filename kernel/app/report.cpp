@@ -192,6 +192,7 @@ std::string timings_text(const Summary& summary) {
     text += fmt::format("  loop {}: {} steps, dt {} to {}{}\n", loop.name, loop.steps,
                         simulated_time_text(loop.smallest_dt), simulated_time_text(loop.largest_dt),
                         loop.limited_by.empty() ? "" : ", the last limited by " + loop.limited_by);
+  for (const std::string& remark : t.remarks) text += "  " + remark + "\n";
   const double per_particle = summary.plan.particles > 0 ? static_cast<double>(summary.plan.total_bytes) /
                                                                static_cast<double>(summary.plan.particles)
                                                          : 0.0;

@@ -131,6 +131,7 @@ std::string to_json(const Summary& summary) {
       {"loops", loops(summary)},
       {"cost", costs(summary)},
       {"operators", operators(summary.timings)},
+      {"remarks", summary.timings.remarks},
       {"references", references(summary.references)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

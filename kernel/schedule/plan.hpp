@@ -102,7 +102,8 @@ struct LoopTiming {
 struct Timings {
   std::vector<OperatorTiming> operators;
   std::vector<LoopTiming> loops;
-  double steps = 0.0;  ///< all of step(), s
+  std::vector<std::string> remarks;  ///< what operators say of the run so far
+  double steps = 0.0;                ///< all of step(), s
   double operators_total = 0.0;
   double neighbour_search = 0.0;               ///< sort, halos and lists together
   double sort = 0.0, halo = 0.0, lists = 0.0;  ///< parts of neighbour_search

@@ -145,6 +145,11 @@ Timings Simulation::Implementation::timings() const {
     if (schedule.find_loop(op->loop) != nullptr) operator_ticks += op->ticks;
     if (op->loop == SHOAL_INITIAL || op->loop == SHOAL_SAMPLE) outside_ticks += op->ticks;
   }
+  for (const auto& op : schedule.operators) {
+    char text[512] = "";
+    if (op->c().remark != nullptr) op->c().remark(op->c().self, text, sizeof text);
+    if (text[0] != '\0') timings.remarks.emplace_back(text);
+  }
   for (const auto& loop : schedule.loops)
     timings.loops.push_back({loop->name, loop->steps, loop->steps > 0 ? loop->smallest_dt : 0.0,
                              loop->largest_dt, loop->last_dt,

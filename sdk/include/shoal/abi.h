@@ -340,6 +340,9 @@ typedef struct shoal_operator {
   // none are zero, but for the volume (spacing^D); those that this call leaves to them get the initial values of the case,
   // as long as the operator does not name them as written. NULL if there is nothing to fill in. // [main]
   shoal_status (*fill)(void* self, const shoal_step* step, uint64_t begin, uint64_t end);
+  // What the user should know of the run so far, in one line: writes at most `size` bytes with the final 0 to `text`, an
+  // empty one if there is nothing to say. Shown at the end of a run and kept in its summary; NULL: never anything.
+  void (*remark)(void* self, char* text, uint64_t size);  // [main]
 } shoal_operator;
 
 // ---------------------------------------------------------------------------------------------------------------

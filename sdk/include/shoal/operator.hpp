@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -502,6 +503,12 @@ shoal_operator describe(std::unique_ptr<AttachedOperator<Op>> attached, std::uin
         return guarded([&] { op_of<Op>(self).fill(begin, end); });
       };
   }
+  if constexpr (requires(const Op& op) { std::string(op.remark()); })
+    c.remark = [](void* self, char* text, std::uint64_t size) {
+      if (size == 0) return;
+      text[0] = '\0';
+      guarded([&] { std::snprintf(text, size, "%s", std::string(op_of<Op>(self).remark()).c_str()); });
+    };
   if constexpr (requires(Op & op) { op.bytes_per_pair(); }) c.bytes_per_pair = attached->op.bytes_per_pair();
   c.self = attached.release();
   return c;
