@@ -7,8 +7,8 @@
 //            dt = 0.8 dt_last (a max(dt_last / T, 0.01) / e)^(1/3),   T the time of the whole run, a the accuracy,
 //          at most twice the last step, and at least that of rk2, whose error is of the order of that of the particles'
 //          spacing. Where more than a hundred steps are made their errors add up to a; s follows from dt.
-//   auto   rkl2 where its stages for that step cost less than rk2's, two for each step at its limit; else rk2. Both
-//          are counted in evaluations of the rate, so that the choice does not depend on the machine.
+//   auto   in each step the one whose step costs less for the time that it covers (cost.hpp); at the end of the run it
+//          says which, and why.
 #pragma once
 
 #include <algorithm>
@@ -17,12 +17,44 @@
 #include <string>
 #include <vector>
 
+#include "cost.hpp"
 #include "integrator.hpp"
 #include "stencil.hpp"
 
 namespace shoal::diffusion {
 
 enum class Integrator { rk2, rkl2, automatic };
+
+// What `auto` chose, for the user.
+struct StepsDone {
+  double steps = 0, super = 0;   // all, and those of rkl2
+  double ns = 0, ns_of_rk2 = 0;  // what they cost, and what they would have with rk2 alone
+  double longest = 0;            // over the longest step that rk2 is stable with
+
+  void add(const StepCost& cost, bool pays, int stages, double lambda_dt) {
+    steps += 1.0;
+    super += pays ? 1.0 : 0.0;
+    ns += stages > 2 ? cost.rkl2(stages) : cost.rk2();
+    ns_of_rk2 += cost.rk2() * std::max(1.0, 0.5 * lambda_dt);
+    longest = std::max(longest, 0.5 * lambda_dt);
+  }
+  std::string text(double accuracy) const {
+    char line[300];
+    if (super == 0.0)
+      std::snprintf(line, sizeof line,
+                    "rk2 in all %.0f steps: the accuracy %.2g, or who else limits the step, allowed none "
+                    "longer than %.3g "
+                    "times the longest that rk2 is stable with, too short for rkl2 to cost less",
+                    steps, accuracy, longest);
+    else
+      std::snprintf(line, sizeof line,
+                    "rkl2 in %.0f of %.0f steps, rk2 in the others, at %.2g of the cost of rk2 alone: the "
+                    "accuracy %.2g "
+                    "allowed steps of up to %.3g times the longest that rk2 is stable with",
+                    super, steps, ns / ns_of_rk2, accuracy, longest);
+    return line;
+  }
+};
 
 struct OuterStep : ParticleOperator<OuterStep> {
   std::vector<std::shared_ptr<const Stencil>> stencils;  // of all bodies
@@ -32,7 +64,10 @@ struct OuterStep : ParticleOperator<OuterStep> {
   double accuracy = 1e-4;
   double duration = 1;     // s, of the run
   int most_stages = 1001;  // rounding errors grow with s^2
-  std::string what;        // field and body, for the log
+  std::string what;        // field and body
+  double particles = 0;    // of all bodies
+  int expressions = 0;     // kinds of them that an evaluation of the rate looks up
+  std::shared_ptr<const OtherWork> others = std::make_shared<OtherWork>();
 
   double time_step(double) const {
     const double explicit_step = cfl * 2.0 / spectral_radius();
@@ -46,7 +81,8 @@ struct OuterStep : ParticleOperator<OuterStep> {
       wanted = std::max(explicit_step, std::min(wanted, 2.0 * stages->step));
     }
     wanted = std::min(wanted, cfl * Legendre::reach(most_stages) / spectral_radius());
-    return integrator == Integrator::automatic && !pays(wanted) ? std::min(wanted, explicit_step) : wanted;
+    const bool plain = integrator == Integrator::automatic && !pays(std::min(wanted, others->longest_step));
+    return plain ? std::min(wanted, explicit_step) : wanted;
   }
 
   void begin() {
@@ -55,25 +91,26 @@ struct OuterStep : ParticleOperator<OuterStep> {
     // rk2 knows nothing of its error: every tenth step measures it with rkl2 of three stages.
     const bool pays_now = lambda_dt > 2.0 * (1.0 + 1e-9);
     const bool super = integrator == Integrator::rkl2 || pays_now || step().number % 10 == 1;
-    if (integrator == Integrator::automatic && pays_now != was_paying_ && reports_ < 3) {
-      report(pays_now, s, lambda_dt);
-      ++reports_;
-    }
-    was_paying_ = pays_now;
     stages->super = super;
     stages->number = super ? s : 2;
     stages->step = dt();
     stages->start = time();
     if (super) stages->forget_error();
+    done_.add(cost(), pays_now, super ? s : 2, lambda_dt);
+  }
+  std::string remark() const {
+    return integrator == Integrator::automatic && done_.steps > 0.0 ? what + ": " + done_.text(accuracy) : "";
   }
   void save(const shoal_stream& stream) const {
     const double state[6] = {stages->step,      stages->measured_step, stages->squares,
                              stages->particles, stages->lowest,        stages->highest};
     check_host(stream.write(stream.context, state, sizeof state));
+    check_host(stream.write(stream.context, &done_, sizeof done_));
   }
   void load(const shoal_stream& stream) {
     double state[6];
     check_host(stream.read(stream.context, state, sizeof state));
+    check_host(stream.read(stream.context, &done_, sizeof done_));
     stages->step = state[0];
     stages->measured_step = state[1];
     stages->squares = state[2];
@@ -88,32 +125,21 @@ struct OuterStep : ParticleOperator<OuterStep> {
     for (const auto& stencil : stencils) largest = std::max(largest, stencil->spectral_radius);
     return largest;
   }
-  // Whether rkl2 covers this step with fewer evaluations than rk2, which needs lambda dt of them. A stage of rkl2 costs
-  // a tenth more than one of rk2 (measured in 2D with 20 neighbours).
+  StepCost cost() const {
+    double neighbours = 0;
+    for (const auto& stencil : stencils)
+      for (const auto& weights : stencil->weights)  // the limiter looks at each three times
+        neighbours += (stencil->limited ? 3.0 : 1.0) * static_cast<double>(weights.size());
+    return {particles, neighbours, expressions, others->ns};
+  }
+  // Whether a step of rkl2 costs less than the steps of rk2 that cover it.
   bool pays(double step) const {
     const double lambda_dt = step * spectral_radius() / cfl;
-    return 1.1 * Legendre::stages(lambda_dt) < lambda_dt;
-  }
-  void report(bool super, int s, double lambda_dt) const {
-    char text[240];
-    const double ratio = s / lambda_dt;
-    if (super)
-      std::snprintf(
-          text, sizeof text,
-          "%s at %.4g s: rkl2, as a step of %.4g s has the accuracy %.2g and takes %d evaluations of the "
-          "rate, %.2f of those of rk2",
-          what.c_str(), time(), dt(), accuracy, s, ratio);
-    else
-      std::snprintf(
-          text, sizeof text,
-          "%s at %.4g s: rk2, as the accuracy %.2g allows a step of %.4g s only, which is stable with "
-          "its 2 evaluations of the rate",
-          what.c_str(), time(), accuracy, dt());
-    host().log(SHOAL_LOG_INFO, text);
+    const StepCost one = cost();
+    return one.rkl2(Legendre::stages(lambda_dt)) < one.rk2() * std::max(1.0, 0.5 * lambda_dt);
   }
 
-  bool was_paying_ = false;
-  int reports_ = 0;
+  StepsDone done_;
 };
 
 }  // namespace shoal::diffusion

@@ -4,6 +4,7 @@
 // One explicit step of diffusion (rk2: two rates, two updates) against the plain loop that it replaces: all of a pair
 // computed anew, one neighbour after the other, fields by name in arrays of doubles. 200 000 particles in 3D, one
 // thread, least processor time of ten repetitions that take turns. Both give the same c.
+// Then what the parts of a step cost: plugins/diffusion/cost.hpp holds these figures, by which `auto` chooses.
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -76,7 +77,7 @@ void prepare(Op& op, Scene& scene, bool pairs) {
   scene.bind(op.accesses(), [&](const shoal_binding& binding) { op.bind(binding); });
 }
 
-void run(auto& op, Scene& scene, double time, double dt) {
+void run(auto& op, Scene& scene, double time, double dt, double* partial = nullptr) {
   shoal_step step{};
   step.size = sizeof step;
   step.dimensions = 3;
@@ -86,7 +87,91 @@ void run(auto& op, Scene& scene, double time, double dt) {
   if constexpr (requires { op.begin(); }) op.begin();
   for (std::uint64_t begin = 0; begin < scene.size(); begin += 256)
     op.template run_chunk<3>({sizeof(shoal_chunk), static_cast<std::uint32_t>(begin / 256), begin,
-                              std::min(scene.size(), begin + 256), nullptr});
+                              std::min(scene.size(), begin + 256), partial});
+}
+
+// Least processor time of ten repetitions over the particles, ns.
+double ns_per_particle(auto& op, Scene& scene, double time, double dt) {
+  double partial[8] = {}, least = HUGE_VAL;
+  for (int repetition = 0; repetition < 10; ++repetition) {
+    const double begin = processor_time();
+    run(op, scene, time, dt, partial);
+    least = std::min(least, processor_time() - begin);
+  }
+  return 1e9 * least / static_cast<double>(scene.size());
+}
+
+// The scene's rows, cut to at most `longest` neighbours and put next to each other again.
+class ShortRows {
+ public:
+  ShortRows(const Scene& scene, std::uint32_t longest) {
+    for (std::uint64_t i = 0; i < scene.size(); ++i) {
+      const std::uint32_t* row = scene.list().indices() + scene.list().offsets()[i];
+      counts_.push_back(std::min(longest, scene.list().counts()[i]));
+      offsets_.push_back(indices_.size());
+      const std::size_t padded = (counts_.back() + SHOAL_PADDING - 1) / SHOAL_PADDING * SHOAL_PADDING;
+      for (std::size_t m = 0; m < padded; ++m)
+        indices_.push_back(row[std::min<std::size_t>(m, counts_.back() - 1)]);
+    }
+    list_ = {sizeof(shoal_neighbours),
+             0,
+             offsets_.data(),
+             counts_.data(),
+             indices_.data(),
+             scene.size(),
+             Scene::cutoff,
+             1};
+  }
+  double mean() const {
+    double sum = 0;
+    for (const std::uint32_t count : counts_) sum += count;
+    return sum / static_cast<double>(counts_.size());
+  }
+  void give(auto& op, Scene& scene) const {
+    scene.bind(op.accesses(), [&](shoal_binding binding) {
+      binding.neighbours = &list_;
+      op.bind(binding);
+    });
+  }
+
+ private:
+  std::vector<std::uint32_t> counts_, indices_;
+  std::vector<std::uint64_t> offsets_;
+  shoal_neighbours list_{};
+};
+
+void print_costs(Scene& scene, const std::shared_ptr<const Stencil>& stencil) {
+  ApplyStencil apply;
+  apply.set("c", stencil);
+  prepare(apply, scene, true);
+  double rate[2], neighbours[2];
+  for (const std::uint32_t k : {0U, 1U}) {
+    const ShortRows rows(scene, k == 0 ? 20 : 1000);
+    rows.give(apply, scene);
+    rate[k] = ns_per_particle(apply, scene, 0.0, 1e-9);
+    neighbours[k] = rows.mean();
+  }
+  const double per_neighbour = (rate[1] - rate[0]) / (neighbours[1] - neighbours[0]);
+  const auto stages = std::make_shared<Stages>();
+  stages->step = 1e-9;
+  HeunStage heun;
+  heun.set("c");
+  heun.stages = stages;
+  prepare(heun, scene, false);
+  SuperStage stage;
+  stage.set("c");
+  stage.stages = stages;
+  prepare(stage, scene, false);
+  stages->number = 5;
+  stages->super = true;
+  const double of_heun = ns_per_particle(heun, scene, 0.0, 1e-9);
+  const double of_stage = ns_per_particle(stage, scene, 0.4e-9, 0.2e-9);
+  const double of_last = ns_per_particle(stage, scene, 0.8e-9, 0.2e-9);
+  std::printf("costs of the parts of a step, ns per particle\n");
+  std::printf("  rate: %.2f per neighbour and %.1f per particle\n", per_neighbour,
+              rate[0] - per_neighbour * neighbours[0]);
+  std::printf("  a stage of rk2 %.2f, of rkl2 %.2f, its error at the end of a step %.2f\n", of_heun, of_stage,
+              of_last - of_stage);
 }
 
 }  // namespace
@@ -160,4 +245,5 @@ int main() {
               1e9 * least_ours / pairs);
   std::printf("  faster by (wanted >= 3)         %8.2f\n", least_plain / least_ours);
   std::printf("  weights, once                   %8.2f ms\n", 1e3 * weights_seconds);
+  print_costs(scene, stencil);
 }

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "../cost.hpp"
 #include "activation.hpp"
 #include "model.hpp"
 #include "reaction_step.hpp"
@@ -35,6 +36,7 @@ std::string number(double value) {
 
 void Reaction::build(const Builder& b) {
   b.loop("diffusion", {"before", "diffuse", "after"});
+  const auto work = OtherWork::of(b);
   const auto shared_model = std::make_shared<const Model>(*model->object, b.dimensions());
   for (const BodyIndex body : bodies.value()) {
     auto made = std::make_shared<BodyReaction>(
@@ -47,6 +49,10 @@ void Reaction::build(const Builder& b) {
     b.note(std::string(b.body(body).name) + ": " + model->object->type->name + ", " +
            std::to_string(reaction->integrator.n_variables()) + " variables, steps of at most " +
            number(step) + " s between reaction and diffusion");
+
+    work->longest_step = std::min(work->longest_step, step);
+    work->ns += static_cast<double>(b.body(body).n_particles * reaction->integrator.n_variables()) * 2.0 *
+                measured::reaction_variable;
 
     b.attach<ReactionRest>(
         "diffusion.reaction_rest", at_initial, b.target(body), [&](auto& op) { op.set(reaction); },

@@ -104,7 +104,11 @@ TEST_CASE("auto takes rk2 where the accuracy allows short steps only, rkl2 where
   const auto stencil = std::make_shared<Stencil>();
   stencil->spectral_radius = 100.0;
   OuterStep op;
+  stencil->weights.emplace_back(20 * 1000);
   op.stencils = {stencil};
+  op.particles = 1000;
+  const auto others = std::make_shared<OtherWork>();
+  op.others = others;
   op.stages = std::make_shared<Stages>();
   op.integrator = Integrator::automatic;
   op.accuracy = 1e-4;
@@ -119,4 +123,10 @@ TEST_CASE("auto takes rk2 where the accuracy allows short steps only, rkl2 where
   stages.squares = std::pow(0.2 * 1e-4 / 8, 2);  // an eighth of what is allowed: 1.6 times as long
   CHECK(op.time_step(0) == doctest::Approx(0.32));
   CHECK(Legendre::stages(0.32 * 100) == 9);
+  // A reaction that allows 0.03 s: three stages are no cheaper than one step and a half of rk2, unless each of those pays
+  // for a step of the reaction too.
+  others->longest_step = 0.03;
+  CHECK(op.time_step(0) == doctest::Approx(0.02));
+  others->ns = 1000 * 2 * 19 * measured::reaction_variable;
+  CHECK(op.time_step(0) == doctest::Approx(0.32));
 }

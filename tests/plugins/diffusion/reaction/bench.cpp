@@ -12,7 +12,9 @@
 #include <cstdio>
 #include <ctime>
 
+#include "aliev_panfilov.hpp"
 #include "cells.hpp"
+#include "fitzhugh_nagumo.hpp"
 #include "number.hpp"
 #include "plain_ten_tusscher.hpp"
 #include "ten_tusscher_panfilov.hpp"
@@ -143,6 +145,21 @@ TEST_CASE("rates of the ventricular cell: packs against numbers") {
       "library), %.0f (own), as printed %.0f; ratio %.1f\n",
       lanes, packs, library, own, printed, numbers / packs);
   CHECK(numbers > (lanes == 8 ? 4.0 : 2.0) * packs);
+}
+
+template <class Model>
+void print_step(const char* name, const Model& model) {
+  const ReactionIntegrator integrator(interface_of(model));
+  Cells cells(integrator, n_cells);
+  const auto [ns] = least_ns_per_cell([&] { cells.advance(0.0, 1e-5); });
+  std::printf("a step of %s: %.1f ns a cell, %.1f for each variable\n", name, ns,
+              ns / static_cast<double>(integrator.n_variables()));
+}
+
+TEST_CASE("what steps cost, for plugins/diffusion/cost.hpp") {
+  print_step("ten Tusscher-Panfilov", TenTusscherPanfilov());
+  print_step("Aliev-Panfilov", WithDefaults<AlievPanfilov>().model);
+  print_step("FitzHugh-Nagumo", WithDefaults<FitzHughNagumo>().model);
 }
 
 TEST_CASE("steps of the ventricular cell: packs against numbers") {
