@@ -8,6 +8,7 @@
 #include "conductivity.hpp"
 #include "fit.hpp"
 #include "integrator.hpp"
+#include "limiter.hpp"
 #include "line_weights.hpp"
 #include "pairwise.hpp"
 #include "source.hpp"
@@ -103,6 +104,12 @@ class OneField {
       b_.own_field(body, rate_of(field_).c_str(), at_rate);
       b_.guard(body, field_.c_str(), -HUGE_VAL, HUGE_VAL);  // NaN stops the run
       attach_stencil(k, at_rate);
+    }
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const BodyIndex body = bodies_[k].index;
+      if (limited())  // after the limiters of all bodies
+        b_.attach<ApplyLimited>("diffusion.rate", at_rate, target_of(k),
+                                [&](auto& op) { op.set(field_, stencils_[k], !conditions_.empty()); });
       attach_source(k, at_rate);
       const auto setup = [&](auto& op) {
         op.set(field_);
@@ -121,6 +128,8 @@ class OneField {
  private:
   bool conservative() const { return physics_.scheme.value() == "conservative"; }
   bool moving() const { return physics_.inside.is_set(); }
+  // Walls have no limiter of their own.
+  bool limited() const { return physics_.scheme.value() == "monotone" && walls_.empty(); }
 
   void attach_conductivity(std::size_t k) const {
     attach_conductivity(bodies_[k].index, media_[k], wave_speed_correction(k));
@@ -194,17 +203,22 @@ class OneField {
       op.cfl = physics_.cfl;
       op.accuracy = physics_.accuracy;
       op.duration = b_.end_time();
-      op.what = "diffusion of " + field_ + " in " + first;
+      op.what = field_ + " in " + first;
+      for (const BodyOfMedium& body : bodies_)
+        op.particles += static_cast<double>(b_.body(body.index).n_particles);
+      op.expressions = int{!conditions_.empty()} + int{physics_.source.is_set()};
+      op.others = OtherWork::of(b_);
     });
     if (integrator() == Integrator::automatic)
       b_.note(field_ + " in " + first +
-              ": in each step rkl2 where its stages for the accuracy cost less than rk2's, "
-              "else rk2 (--log-level info says when and why)");
+              ": in each step rkl2 where it costs less than rk2 for the accuracy; the end of the run says "
+              "which it was, and why");
   }
 
   void attach_stencil(std::size_t k, At at_rate) {
     const auto stencil = std::make_shared<Stencil>();
     stencils_.push_back(stencil);
+    stencil->limited = limited();
     stencil->motions.push_back(bodies_[k].motion);
     for (std::size_t other = 0; other < bodies_.size(); ++other)
       if (other != k) stencil->motions.push_back(bodies_[other].motion);
@@ -213,6 +227,11 @@ class OneField {
       attach_weights<PairwiseWeights>(k, stencil);
     else
       attach_weights<FitWeights>(k, stencil);
+    if (limited()) {
+      b_.attach<LimiterBounds>("diffusion.limiter", at_rate, target_of(k),
+                               [&](auto& op) { op.set(field_, stencil, !conditions_.empty()); });
+      return;
+    }
     b_.attach<ApplyStencil>("diffusion.rate", at_rate, target_of(k),
                             [&](auto& op) { op.set(field_, stencil); });
     if (!conditions_.empty())

@@ -36,8 +36,7 @@ struct Diffusion final : Physics {
       "accurate: second order on any particles and at surfaces, for coefficients that are smooth in a body. "
       "conservative: keeps the content to rounding, and the flux continuous where coefficients jump. "
       "monotone: as "
-      "accurate where no weight is negative, else with some diffusion added, so that no new extrema come "
-      "into being.",
+      "accurate as far as no new extrema come into being, else with some diffusion added.",
       one_of("accurate", "conservative", "monotone"), default_to("accurate")};
   Param<bool> gradient_correction{"gradient_correction", nullptr,
                                   "Whether the conservative scheme corrects the gradient of the smoothing "

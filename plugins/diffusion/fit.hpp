@@ -90,7 +90,9 @@ class FitWeights : public WeightsOfPairs {
       std::vector<Row<D>> rows;
       for (std::uint64_t i = chunk.begin; i < chunk.end; ++i) {
         gather_rows<D>(kernel, i, rows);
-        double sum = monotone ? monotone_row<D>(i, rows, surface) : fit_row<D>(i, rows, surface);
+        double sum = !monotone          ? fit_row<D>(i, rows, surface)
+                     : stencil->limited ? limited_row<D>(i, rows, surface)
+                                        : monotone_row<D>(i, rows, surface);
         if (sum < 0.0) sum = pairwise_row<D>(kernel, lattice, i, surface);
         row_sum.update(Particle<D>{i, chunk.partial}, sum);
       }
@@ -280,6 +282,29 @@ class FitWeights : public WeightsOfPairs {
     return total;
   }
 
+  // The row of the monotone scheme, and what that of the fit has more; returns the larger sum |l| of the two.
+  template <int D>
+  double limited_row(std::uint64_t i, const std::vector<Row<D>>& rows,
+                     std::vector<SurfaceWeight>& surface) const {
+    const auto at = [&](auto& of_pairs, const Row<D>& row) -> double& {
+      return of_pairs[static_cast<std::size_t>(row.relation)][row.entry];
+    };
+    std::vector<SurfaceWeight> accurate;
+    const double of_fit = fit_row<D>(i, rows, accurate);
+    for (const Row<D>& row : rows)
+      if (of_fit >= 0.0 && row.condition == 0) at(stencil->more, row) = at(stencil->weights, row);
+    const std::size_t first = surface.size();
+    const double total = monotone_row<D>(i, rows, surface);
+    if (of_fit < 0.0) return total;
+    for (const Row<D>& row : rows)
+      if (row.condition == 0) at(stencil->more, row) -= at(stencil->weights, row);
+    for (std::size_t k = 0; k < accurate.size(); ++k) {  // both have an entry for each row, in their order
+      surface[first + k].more_per_data = accurate[k].per_data - surface[first + k].per_data;
+      surface[first + k].more_per_value = accurate[k].per_value - surface[first + k].per_value;
+    }
+    return std::max(total, of_fit);
+  }
+
   // div K at particle i, from a linear fit of K over the neighbours in its body.
   template <int D>
   Vec<D> divergence(std::uint64_t i) const {
@@ -317,7 +342,7 @@ class FitWeights : public WeightsOfPairs {
     if (row.condition < 2) return 0.0;
     const double per_data = l / row.size;
     const double per_value = per_data * points->conditions[static_cast<std::size_t>(row.condition - 2)].a;
-    surface.push_back({static_cast<std::uint32_t>(i), row.j, row.relation, per_data, per_value});
+    surface.push_back({static_cast<std::uint32_t>(i), row.j, row.relation, per_data, per_value, 0.0, 0.0});
     return std::abs(per_value);
   }
 };

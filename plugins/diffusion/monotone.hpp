@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Shoal authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The monotone scheme: the weights of the fit with the condition that none is negative, so that c stays between its
-// neighbours and the data of surfaces, for any tensor.
+// The non-negative weights of the monotone scheme (limiter.hpp): those of the fit with the condition that none is
+// negative, so that c stays between its neighbours and the data of surfaces, for any tensor.
 //   minimise  sum_j l_j^2 / (2 W_j) + |d^(-1/2) (sum_j l_j p_j - g)|^2 / 2,   l_j >= 0
 // p_j are the rows of the fit and g what they have to add up to (fit.hpp). Where l >= 0 was no condition, or can be met,
 // the moments are exact up to d and the scheme is consistent of second order; else second moments are missed: some

@@ -120,8 +120,10 @@ class WeightsOfPairs : public RowOperator {
     if (!active_) return;
     // 2 max_i sum_j |l_ij| bounds all eigenvalues (Gershgorin), by a factor of 1.5 to 4 too high.
     stencil->spectral_radius = 2.0 * row_sum.result();
-    if (!moving)
-      stencil->spectral_radius = std::min(stencil->spectral_radius, 1.1 * spectral_radius(*this, *stencil));
+    if (moving) return;
+    double radius = spectral_radius(*this, *stencil);
+    if (stencil->limited) radius = std::max(radius, spectral_radius(*this, *stencil, true));
+    stencil->spectral_radius = std::min(stencil->spectral_radius, 1.1 * radius);
   }
   void save(const shoal_stream& stream) const {
     check_host(stream.write(stream.context, &stencil->spectral_radius, sizeof(double)));
@@ -220,7 +222,7 @@ class WeightsOfPairs : public RowOperator {
     const double per_length =
         dot(point.normal, own_tensor<D>(i) * point.normal) / std::max(dot(x, point.normal), 0.25 * spacing());
     const double q = 2.0 / capacity * share * per_length / (condition.a + condition.b * per_length);
-    surface.push_back({static_cast<std::uint32_t>(i), j, relation, q, q * condition.a});
+    surface.push_back({static_cast<std::uint32_t>(i), j, relation, q, q * condition.a, 0.0, 0.0});
   }
 
   Names names_;

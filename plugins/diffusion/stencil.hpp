@@ -43,17 +43,20 @@ struct WatchMotion : ParticleOperator<WatchMotion> {
 
 // What those who compute the weights and those who apply them share.
 struct SurfaceWeight {
-  std::uint32_t i, j;          // the particle, and the one that carries the surface point
-  std::int32_t relation;       // of j; -1: the point is that of i itself
-  double per_data, per_value;  // dc_i/dt = per_data g_j - per_value c_i
+  std::uint32_t i, j;                            // the particle, and the one that carries the surface point
+  std::int32_t relation;                         // of j; -1: the point is that of i itself
+  double per_data, per_value;                    // dc_i/dt = per_data g_j - per_value c_i
+  double more_per_data = 0, more_per_value = 0;  // as Stencil::more
 };
 
 struct Stencil {
-  std::vector<std::vector<SurfaceWeight>> surface;     // [chunk]
-  std::vector<std::vector<double>> weights;            // [relation][entry of the list], 0 in the padding
-  double spectral_radius = 0;                          // 1/s, largest magnitude of an eigenvalue
+  std::vector<std::vector<SurfaceWeight>> surface;  // [chunk]
+  std::vector<std::vector<double>> weights;         // [relation][entry of the list], 0 in the padding
+  std::vector<std::vector<double>> more;            // what the accurate weights are larger by (limiter.hpp)
+  double spectral_radius = 0;                       // 1/s, largest magnitude of an eigenvalue
   std::vector<std::shared_ptr<const Motion>> motions;  // of the bodies of the relations
   std::vector<std::uint64_t> seen;                     // their counts when the weights were computed
+  bool limited = false;                                // whether there are `more`
 
   std::vector<SurfaceWeight>& surface_of(const shoal_chunk& chunk) {
     if (chunk.number >= surface.size()) throw std::logic_error("more chunks of particles than expected");
@@ -79,12 +82,14 @@ bool renew_stencil(const Op& op, Stencil& stencil) {
   if (counts == stencil.seen) return false;
   stencil.seen = counts;
   stencil.weights.resize(op.n_relations());
+  if (stencil.limited) stencil.more.resize(op.n_relations());
   stencil.surface.assign(op.n_particles() / 32 + 2, {});
   for (std::size_t k = 0; k < op.n_relations(); ++k) {
     const shoal_neighbours& list = op.neighbours(k);
     const std::uint64_t last = list.n_rows - 1;
     stencil.weights[k].assign(list.n_rows == 0 ? 0 : list.offsets[last] + list.counts[last] + SHOAL_PADDING,
                               0.0);
+    if (!stencil.more.empty()) stencil.more[k].assign(stencil.weights[k].size(), 0.0);
   }
   return true;
 }
