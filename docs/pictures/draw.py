@@ -3,8 +3,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws particles of one moment of a 2D run as a PNG picture; needs nothing but Python.
 
-    docs/pictures/draw.py RESULTS BODY NUMBER FIELD MAXIMUM PICTURE [WALL]
+    docs/pictures/draw.py RESULTS BODY NUMBER FIELD MAXIMUM PICTURE [WALL|- [RADIUS]]
     docs/pictures/draw.py results/dam_break_2d water 25 velocity 5 docs/pictures/dam_break_2d.png tank
+
+RADIUS is that of the dots, in spacings: 0.71 leaves no gaps on a lattice.
 """
 import struct
 import sys
@@ -56,9 +58,9 @@ def write_png(path, pixels, width, height):
                   chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
 
 
-def main(results, body, number, field, maximum, picture, wall=None):
+def main(results, body, number, field, maximum, picture, wall="-", radius=0.55):
     bodies = []
-    if wall:
+    if wall != "-":
         bodies.append((read_arrays(f"{results}/vtk/{wall}_{0:05d}.vtp"), None))
     bodies.append((read_arrays(f"{results}/vtk/{body}_{int(number):05d}.vtp"), field))
     points = [p for arrays, _ in bodies for p in arrays["Points"]]
@@ -69,13 +71,13 @@ def main(results, body, number, field, maximum, picture, wall=None):
     height = round((high[1] - low[1] + 2 * margin) * scale)
     pixels = bytearray(b"\xff" * (3 * WIDTH * height))
     spacing = min(abs(a[0] - b[0]) + abs(a[1] - b[1]) for a, b in zip(bodies[0][0]["Points"], bodies[0][0]["Points"][1:]))
-    radius = max(1.5, 0.55 * spacing * scale)
+    radius = max(1.5, float(radius) * spacing * scale)
     for arrays, name in bodies:
         values = arrays[name] if name else [None] * len(arrays["Points"])
         for point, value in zip(arrays["Points"], values):
             rgb = (196, 199, 204)
             if value is not None:
-                rgb = colour(sum(v * v for v in value) ** 0.5 / float(maximum))
+                rgb = colour((value[0] if len(value) == 1 else sum(v * v for v in value) ** 0.5) / float(maximum))
             x, y = (point[0] - low[0] + margin) * scale, height - (point[1] - low[1] + margin) * scale
             for row in range(max(0, int(y - radius)), min(height, int(y + radius) + 2)):
                 reach = radius * radius - (row - y) ** 2
