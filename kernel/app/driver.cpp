@@ -112,6 +112,9 @@ bool Driver::load(const std::filesystem::path& checkpoint) {
     Console::warning(std::string(error.what()) + "; trying the one before");
     return false;
   }
+  // Somebody who names a later time wants to go on.
+  const bool goes_on = until_ && *until_ > session_.run().time();
+  session_.run().set_finish_reason(goes_on ? std::string() : state.finish_reason);
   earlier_wall_seconds_ = state.wall_seconds;
   start_time_ = last_time_ = session_.run().time();
   first_step_ = checkpointed_step_ = session_.run().outer_steps();
@@ -185,8 +188,9 @@ void Driver::write_checkpoint() {
   Simulation& run = session_.run();
   if (checkpointed_step_ == run.outer_steps()) return;
   const Clock::time_point begin = Clock::now();
-  const RunState state{std::string(build_info::version), effective_case_, run.time(),
-                       earlier_wall_seconds_ + wall_seconds(), session_.recorder().state()};
+  const RunState state{
+      std::string(build_info::version),       effective_case_,     run.time(),
+      earlier_wall_seconds_ + wall_seconds(), run.finish_reason(), session_.recorder().state()};
   checkpoints_.write(run.outer_steps(), to_text(state), [&](std::ostream& stream) { run.save(stream); });
   checkpointed_step_ = run.outer_steps();
   last_checkpoint_ = Clock::now();
@@ -271,6 +275,7 @@ Summary Driver::summary(const std::string& status) const {
   s.threads = threads_of(options_);
   s.started = started_;
   s.status = status;
+  s.finish_reason = run.finish_reason();
   s.time = run.time();
   s.start_time = start_time_;
   s.end_time = run.end_time();
@@ -298,6 +303,8 @@ void Driver::tell_end(const Summary& result) const {
   Console::inform("\n" + timings_text(result));
   if (!result.references.empty()) Console::print(references_text(result.references));
   const std::string wall = duration_text(result.wall_seconds);
+  if (result.status == "finished" && !result.finish_reason.empty())
+    Console::print(fmt::format("ended at {}: {}", simulated_time_text(result.time), result.finish_reason));
   if (const std::vector<std::string> files = time_series(folder_.path()); !files.empty())
     Console::inform("for ParaView: " + join(files));
   if (result.status == "finished")

@@ -75,6 +75,7 @@ SimulationSettings settings_of(const CaseModel& model, const AssemblyOptions& op
   settings.end_time = model.run.end;
   settings.threads = options.threads;
   settings.failures = {plugin_host().fail, take_failure_text};
+  settings.take_finish = take_finish_reason;
   for (const auto& [loop, factor] : model.run.time_step_factors) settings.time_step_factors[loop] = factor;
   for (std::size_t k = 0; k < static_cast<std::size_t>(model.dimensions); ++k) {
     settings.gravity[k] = model.gravity[k];

@@ -153,7 +153,8 @@ void Recorder::after_step(Simulation& run) {
 
 void Recorder::record(Simulation& run, bool first) {
   const auto is_due = [&](const Due& due) {
-    return first ? due.at_start(run.time()) : due.between(last_time_, run.time());
+    if (first) return due.at_start(run.time());
+    return !run.finish_reason().empty() || due.between(last_time_, run.time());
   };
   std::vector<OutputWriter*> outputs;
   std::vector<ProbeOfCase*> probes;

@@ -67,6 +67,7 @@ std::string to_text(const RunState& state) {
                       {"wall_seconds", state.wall_seconds},
                       {"outputs", nlohmann::json::array()},
                       {"probes", nlohmann::json::array()}};
+  if (!state.finish_reason.empty()) json["finish_reason"] = state.finish_reason;
   for (const auto& output : state.recorder.outputs)
     json["outputs"].push_back({{"name", output.name}, {"sequence", output.sequence}});
   for (const auto& series : state.recorder.series)
@@ -82,6 +83,7 @@ RunState state_from_text(const std::string& text) {
     state.effective_case = json.at("case");
     state.time = json.at("time");
     state.wall_seconds = json.at("wall_seconds");
+    state.finish_reason = json.value("finish_reason", "");
     for (const nlohmann::json& output : json.at("outputs"))
       state.recorder.outputs.push_back({output.at("name"), output.at("sequence")});
     for (const nlohmann::json& series : json.at("probes"))

@@ -16,6 +16,7 @@ struct RunState {
   std::string effective_case;
   double time = 0.0;          ///< s
   double wall_seconds = 0.0;  ///< of all sessions until then
+  std::string finish_reason;  ///< if an operator ended the run here
   RecorderState recorder;
 };
 

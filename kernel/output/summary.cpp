@@ -114,6 +114,7 @@ std::string to_json(const Summary& summary) {
       {"folder", summary.folder},
       {"status", summary.status},
       {"failure", summary.failure},
+      {"finish_reason", summary.finish_reason},
       {"started", summary.started},
       {"shoal",
        {{"version", summary.version},

@@ -27,6 +27,7 @@ struct Summary {
   /// running, finished, stopped (as asked), interrupted, failed
   std::string status;
   std::string failure;                                  ///< why, if it failed
+  std::string finish_reason;                            ///< why, if a physics ended it
   double time = 0.0, start_time = 0.0, end_time = 0.0;  ///< s of simulated time
   std::uint64_t outer_steps = 0;                        ///< of all sessions
   double wall_seconds = 0.0;                            ///< of this run of the program, from its start

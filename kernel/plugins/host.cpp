@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <utility>
 
 #include "kernel/build_info.hpp"
 #include "kernel/plugins/isa.hpp"
@@ -27,6 +28,28 @@ Sink& sink() {
 std::atomic<EvaluateFunction> evaluate_function{nullptr};
 std::atomic<EvaluateNamesFunction> evaluate_names_function{nullptr};
 std::atomic<NameFunction> name_function{nullptr};
+
+// Why the run is to end, by whatever thread it was said.
+struct Finish {
+  std::mutex mutex;
+  std::atomic<bool> asked{false};
+  std::string reason;
+};
+Finish& the_finish() {
+  static Finish instance;
+  return instance;
+}
+
+void host_finish(const char* reason) {
+  Finish& finish = the_finish();
+  const std::lock_guard lock(finish.mutex);
+  try {
+    finish.reason = reason && *reason ? reason : "a plugin asked for it";
+  } catch (...) {
+    finish.reason.clear();
+  }
+  finish.asked = true;
+}
 
 // A flag beside the text keeps the call of a callback that does not fail free of string work.
 thread_local bool has_failure = false;
@@ -116,7 +139,8 @@ const shoal_host& plugin_host() {
                                 .fail = host_fail,
                                 .evaluate = host_evaluate,
                                 .expression_name = host_expression_name,
-                                .evaluate_names = host_evaluate_names};
+                                .evaluate_names = host_evaluate_names,
+                                .finish = host_finish};
   return table;
 }
 
@@ -125,6 +149,14 @@ std::string take_failure_text() {
   if (has_failure) text.swap(failure_text);
   has_failure = false;
   return text;
+}
+
+std::string take_finish_reason() {
+  Finish& finish = the_finish();
+  if (!finish.asked.load(std::memory_order_relaxed)) return {};
+  const std::lock_guard lock(finish.mutex);
+  finish.asked = false;
+  return std::exchange(finish.reason, {});
 }
 
 namespace detail {

@@ -44,6 +44,8 @@ const shoal_host& plugin_host();
 
 /// What a plugin last said through host->fail on this thread; forgotten by this call.
 std::string take_failure_text();
+/// Why a plugin wants the run to end since the last call (shoal_host::finish); empty if none does.
+std::string take_finish_reason();
 
 namespace detail {
 void forget_failure_text() noexcept;

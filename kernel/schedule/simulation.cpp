@@ -30,6 +30,7 @@ Simulation::Implementation::Implementation(const SimulationSettings& what)
   if (what.threads > tbb::info::default_concurrency())
     more_threads.emplace(tbb::global_control::max_allowed_parallelism,
                          static_cast<std::size_t>(what.threads));
+  if (what.take_finish != nullptr) what.take_finish();  // nobody of this run has spoken yet
   make_domain();
   if (what.sort_interval > 0) neighbourhood.set_sort_interval(what.sort_interval);
 }
@@ -255,6 +256,9 @@ void Simulation::step(double no_later_than) {
     const double end = implementation_->settings.end_time;
     implementation_->stepper.step(std::min(end, no_later_than), end);
   });
+  if (implementation_->settings.take_finish != nullptr)
+    if (std::string reason = implementation_->settings.take_finish(); !reason.empty())
+      implementation_->finish_reason = std::move(reason);
 }
 
 void Simulation::sample() {
@@ -263,7 +267,9 @@ void Simulation::sample() {
       [&] { implementation_->stepper.run_outside(implementation_->schedule.sample); });
 }
 
-bool Simulation::finished() const { return !(time() < end_time()); }
+bool Simulation::finished() const { return !finish_reason().empty() || !(time() < end_time()); }
+const std::string& Simulation::finish_reason() const { return implementation_->finish_reason; }
+void Simulation::set_finish_reason(std::string reason) { implementation_->finish_reason = std::move(reason); }
 double Simulation::time() const { return implementation_->stepper.time; }
 double Simulation::end_time() const { return implementation_->settings.end_time; }
 void Simulation::set_end_time(double end_time) { implementation_->settings.end_time = end_time; }

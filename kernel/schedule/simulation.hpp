@@ -60,6 +60,8 @@ struct SimulationSettings {
   bool poison = true;
 #endif
   FailureChannel failures;
+  /// Why an operator wants the run to end since the last call (shoal_host::finish); empty if none does.
+  std::string (*take_finish)() = nullptr;
 };
 
 /// Values of a field at the start: `evaluate` gets n interleaved positions and fills n * components values.
@@ -125,10 +127,13 @@ class Simulation {
   void step(double no_later_than = std::numeric_limits<double>::infinity());
   /// Runs stage "sample".
   void sample();
+  /// At the end that the settings name, or where an operator said that the run has come to what it is for.
   bool finished() const;
-  double time() const;                 ///< s
-  double end_time() const;             ///< s
-  void set_end_time(double end_time);  ///< s; a resumed run may be longer
+  const std::string& finish_reason() const;    ///< empty unless an operator ended the run
+  void set_finish_reason(std::string reason);  ///< of a run that is resumed; empty: it goes on
+  double time() const;                         ///< s
+  double end_time() const;                     ///< s
+  void set_end_time(double end_time);          ///< s; a resumed run may be longer
   std::uint64_t outer_steps() const;
   double last_outer_dt() const;                 ///< s; 0 before the first step
   std::vector<std::string> loop_names() const;  ///< depth first

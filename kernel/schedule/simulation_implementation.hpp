@@ -59,6 +59,7 @@ class Simulation::Implementation {
   /// Only where more threads are asked for than the machine has cores.
   std::optional<tbb::global_control> more_threads;
   tbb::task_arena arena;
+  std::string finish_reason;
   Phase phase = Phase::bodies;
   std::uint64_t renewal_ticks_before_steps = 0;
 

@@ -46,10 +46,17 @@ std::array<bool, 3> axes_of(const Param<std::vector<Choice>>& axes, int dimensio
   return chosen;
 }
 
-void attach_reaction(const Builder& b, BodyIndex body, const Region& region,
-                     const std::array<bool, 3>& axes) {
+void attach_on_demand(const Builder& b, BodyIndex body, const Region& region,
+                      const std::array<bool, 3>& axes) {
   b.attach<ReactionForce>(
       "solid.reaction_force", {SHOAL_SAMPLE, "reactions"}, b.target(body),
+      [&](auto& op) {
+        op.region = region;
+        op.axes = axes;
+      },
+      SHOAL_OPERATOR_ON_DEMAND);
+  b.attach<HeldAxes>(
+      "solid.held_axes", {SHOAL_INITIAL, "constraints"}, b.target(body),
       [&](auto& op) {
         op.region = region;
         op.axes = axes;
@@ -68,7 +75,7 @@ void Clamp::build(const Builder& b) {
     };
     b.attach<PrescribedMotion>("solid.clamp", {SHOAL_INITIAL, "constraints"}, b.target(body), setup);
     b.attach<PrescribedMotion>("solid.clamp", at_constraints, b.target(body), setup);
-    attach_reaction(b, body, region_of(where, within, b.dimensions()), axes_of(axes, b.dimensions()));
+    attach_on_demand(b, body, region_of(where, within, b.dimensions()), axes_of(axes, b.dimensions()));
   }
 }
 
@@ -92,7 +99,7 @@ void PrescribedMotionPhysics::build(const Builder& b) {
                                    op.half_step = true;
                                  });
     b.attach<PrescribedMotion>("solid.prescribed_motion", at_constraints, b.target(body), setup);
-    attach_reaction(b, body, region_of(where, within, b.dimensions()), axes_of(axes, b.dimensions()));
+    attach_on_demand(b, body, region_of(where, within, b.dimensions()), axes_of(axes, b.dimensions()));
   }
 }
 

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "region.hpp"
@@ -72,6 +73,23 @@ struct ReactionForce : ParticleOperator<ReactionForce> {
     for (int a = 0; a < decltype(i)::dimensions; ++a)
       if (axes[static_cast<std::size_t>(a)])
         reaction[i][a] = -mass[i] * (internal[i][a] + acceleration[i][a]);
+  }
+};
+
+// Tells who asks (relaxation.hpp) which components of the motion are given.
+struct HeldAxes : ParticleOperator<HeldAxes> {
+  In<Vector> reference_position{"reference_position"};
+  InOut<Integer> held{"held_axes", unit("1"), doc("Bit a: the motion along axis a is given.")};
+  Region region;
+  std::array<bool, 3> axes{true, true, true};
+
+  void begin() {
+    if (!region.looked()) region.look(dimensions(), n_particles(), reference_position.data());
+  }
+  void particle(auto i) const {
+    if (!region.holds(i.index)) return;
+    for (int a = 0; a < decltype(i)::dimensions; ++a)
+      if (axes[static_cast<std::size_t>(a)]) held[i] |= std::int64_t{1} << a;
   }
 };
 

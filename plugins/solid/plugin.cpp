@@ -13,6 +13,7 @@
 #include "materials/plastic.hpp"
 #include "materials/st_venant_kirchhoff.hpp"
 #include "point_probe.hpp"
+#include "quasi_static.hpp"
 #include "rigid_plane.hpp"
 #include "total_lagrangian.hpp"
 
@@ -42,6 +43,11 @@ SHOAL_PLUGIN(solid, "0.1.0") {
       "Solids in the total Lagrangian description, with a gradient of second order, hourglass control, "
       "and exact conservation of momentum, angular momentum and energy.",
       "after Bonet, Lok 1999; Ganzenmueller 2015; Zhang, Rezavand, Hu 2021");
+  add<QuasiStatic>(
+      "solid.quasi_static",
+      "Solids at rest under their loads, by damped relaxation with automatic damping; the run ends by "
+      "itself at rest.",
+      "after Underwood 1983; Oakley, Knight 1995");
   add<Clamp>("solid.clamp", "Particles that are held where they are, or in some directions only.");
   add<PrescribedMotionPhysics>("solid.prescribed_motion",
                                "Particles whose displacement or velocity is given.");

@@ -185,50 +185,65 @@ std::uint64_t ReferenceWeights::bytes() const {
          sizeof(std::uint64_t) * offsets_.size();
 }
 
-// Small displacements u of an isotropic body: w^2 is the largest eigenvalue of u -> -f(u) / rho.
-template <int D>
-double ReferenceWeights::power_iteration(const shoal_neighbours& list, const Stiffness& stiffness) const {
-  constexpr int iterations = 60;
-  AlignedNumbers u, force_of, stress, held;
-  u.assign(n_ * D);
-  force_of.assign(n_ * D);
-  stress.assign(n_ * D * D);
-  held.assign(n_ * D);
-  std::uint64_t random = 88172645463325252u;  // xorshift, a start without symmetry
-  for (std::size_t k = 0; k < n_ * D; ++k) {
+// Numbers without any symmetry.
+void ReferenceWeights::random_start(AlignedNumbers& u) const {
+  u.assign(n_ * static_cast<std::size_t>(dimensions_));
+  std::uint64_t random = 88172645463325252u;  // xorshift
+  for (std::size_t k = 0; k < n_ * static_cast<std::size_t>(dimensions_); ++k) {
     random ^= random << 13, random ^= random >> 7, random ^= random << 17;
     u.data()[k] = static_cast<double>(random >> 11) * 0x1p-53 - 0.5;
   }
+}
+
+template <int D>
+void ReferenceWeights::linear_force(const shoal_neighbours& list, const Stiffness& stiffness, const double* u,
+                                    double* out, LinearSpace& space) const {
+  if (space.stress.size() == 0) space.stress.assign(n_ * D * D), space.held.assign(n_ * D);
   const double q_factor = stiffness.hourglass / (spacing_ * spacing_);
+  for (std::uint64_t i = 0; i < n_; ++i) {
+    const auto [gradient, residual] = deformation<D>(row_of(list, i), forward(i), u, i);
+    const Mat<D> strain = symmetric_part(gradient);
+    const Mat<D> s = stiffness.lambda * trace(strain) * identity<D>() + 2.0 * stiffness.mu * strain;
+    std::copy_n(s.e, D * D, space.stress.data() + i * D * D);
+    for (int a = 0; a < D; ++a)
+      space.held.data()[i * D + static_cast<std::size_t>(a)] = q_factor * residual[a];
+  }
+  for (std::uint64_t i = 0; i < n_; ++i) {
+    const Vec<D> f =
+        force<D, true>(row_of(list, i), backward(i), sums(i), space.stress.data(), space.held.data(), i);
+    for (int a = 0; a < D; ++a) out[i * D + static_cast<std::size_t>(a)] = f[a];
+  }
+}
+
+void ReferenceWeights::linear_force(const shoal_neighbours& list, const Stiffness& stiffness, const double* u,
+                                    double* out, LinearSpace& space) const {
+  dimensions_ == 2 ? linear_force<2>(list, stiffness, u, out, space)
+                   : linear_force<3>(list, stiffness, u, out, space);
+}
+
+// Small displacements u of an isotropic body: w^2 is the largest eigenvalue of u -> -f(u) / rho.
+double ReferenceWeights::largest_frequency(const shoal_neighbours& list, const Stiffness& stiffness) const {
+  constexpr int iterations = 60;
+  const std::size_t n = n_ * static_cast<std::size_t>(dimensions_);
+  AlignedNumbers u, f;
+  random_start(u);
+  f.assign(n);
+  LinearSpace space;
   double square = 0;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     double length = 0, along = 0;
-    for (std::size_t k = 0; k < n_ * D; ++k) length += u.data()[k] * u.data()[k];
+    for (std::size_t k = 0; k < n; ++k) length += u.data()[k] * u.data()[k];
     const double scale = 1.0 / std::sqrt(length);
-    for (std::size_t k = 0; k < n_ * D; ++k) u.data()[k] *= scale;
-    for (std::uint64_t i = 0; i < n_; ++i) {
-      const auto [gradient, residual] = deformation<D>(row_of(list, i), forward(i), u.data(), i);
-      const Mat<D> strain = symmetric_part(gradient);
-      const Mat<D> s = stiffness.lambda * trace(strain) * identity<D>() + 2.0 * stiffness.mu * strain;
-      std::copy_n(s.e, D * D, stress.data() + i * D * D);
-      for (int a = 0; a < D; ++a) held.data()[i * D + static_cast<std::size_t>(a)] = q_factor * residual[a];
-    }
-    for (std::uint64_t i = 0; i < n_; ++i) {
-      const Vec<D> f = force<D, true>(row_of(list, i), backward(i), sums(i), stress.data(), held.data(), i);
-      for (int a = 0; a < D; ++a) {
-        const std::size_t k = i * D + static_cast<std::size_t>(a);
-        force_of.data()[k] = -f[a] / stiffness.density;
-        along += u.data()[k] * force_of.data()[k];
-      }
+    for (std::size_t k = 0; k < n; ++k) u.data()[k] *= scale;
+    linear_force(list, stiffness, u.data(), f.data(), space);
+    for (std::size_t k = 0; k < n; ++k) {
+      f.data()[k] *= -1.0 / stiffness.density;
+      along += u.data()[k] * f.data()[k];
     }
     square = along;
-    std::swap(u, force_of);
+    std::swap(u, f);
   }
   return std::sqrt(std::max(0.0, square));
-}
-
-double ReferenceWeights::largest_frequency(const shoal_neighbours& list, const Stiffness& stiffness) const {
-  return dimensions_ == 2 ? power_iteration<2>(list, stiffness) : power_iteration<3>(list, stiffness);
 }
 
 }  // namespace shoal::solid

@@ -74,6 +74,11 @@ struct Stiffness {
   double density = 0;         // kg/m3
 };
 
+// What `linear_force` computes on the way.
+struct LinearSpace {
+  AlignedNumbers stress, held;
+};
+
 class ReferenceWeights {
  public:
   bool built() const { return n_ > 0; }
@@ -90,6 +95,11 @@ class ReferenceWeights {
 
   // Largest angular frequency (rad/s) of the undeformed discrete body, by power iteration; a per cent or so from below.
   double largest_frequency(const shoal_neighbours& list, const Stiffness& stiffness) const;
+  // Force per volume (N/m3) of small displacements u (m) of the undeformed body.
+  void linear_force(const shoal_neighbours& list, const Stiffness& stiffness, const double* u, double* out,
+                    LinearSpace& space) const;
+  // Displacements without any symmetry, to begin a power iteration with.
+  void random_start(AlignedNumbers& u) const;
   // sum_j (G_ij - V_j / V_i G_ji) of particle i, 1/m: the force of a uniform stress, zero for no force.
   void residual(std::uint64_t i, std::uint32_t count, double* out) const;
   std::uint64_t bytes() const;
@@ -102,7 +112,8 @@ class ReferenceWeights {
   template <int D>
   void mirror(const shoal_neighbours& list, const double* volume);
   template <int D>
-  double power_iteration(const shoal_neighbours& list, const Stiffness& stiffness) const;
+  void linear_force(const shoal_neighbours& list, const Stiffness& stiffness, const double* u, double* out,
+                    LinearSpace& space) const;
 
   std::uint64_t n_ = 0;
   int dimensions_ = 0;

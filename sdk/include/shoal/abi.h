@@ -550,6 +550,9 @@ typedef struct shoal_host {
   // As evaluate, with columns[k][i] the value of name k at point i.             // [any]
   shoal_status (*evaluate_names)(const shoal_expression* expression, int32_t dimensions, uint64_t n,
                                  const double* position, const double* const* columns, double t, double* out);
+  // The run has come to what it is for, e.g. to rest: it ends behind this outer step, with all outputs and probes
+  // sampled once more, as it would at the end that the case names. `reason` is said to the user.   // [any]
+  void (*finish)(const char* reason);
 } shoal_host;
 
 // Exported by each plugin as `shoal_plugin_entry`; called once, after the stamp was accepted. The host outlives the

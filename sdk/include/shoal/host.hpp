@@ -57,6 +57,14 @@ inline void log_debug(const std::string& text) { host().log(SHOAL_LOG_DEBUG, tex
 inline void log_info(const std::string& text) { host().log(SHOAL_LOG_INFO, text.c_str()); }
 inline void log_warning(const std::string& text) { host().log(SHOAL_LOG_WARNING, text.c_str()); }
 
+// Ends the run behind this outer step, because it has come to what it is for; outputs and probes are sampled once more.
+inline void finish_run(const std::string& reason) {
+  if (SHOAL_HAS(shoal_host, &host(), finish))
+    host().finish(reason.c_str());
+  else
+    log_warning(reason + "; this version of Shoal cannot end a run before its time");
+}
+
 // Runs a callback; turns its exceptions into a status and a text.
 template <class Callback>
 shoal_status guarded(Callback&& callback) noexcept {

@@ -100,6 +100,15 @@ TEST_CASE("each thread has its own words") {
   for (std::size_t k = 0; k < texts.size(); ++k) CHECK(texts[k] == "worker " + std::to_string(k));
 }
 
+TEST_CASE("why a run is to end is told once, whoever said it") {
+  CHECK(take_finish_reason().empty());
+  std::thread([] { plugin_host().finish("it has come to rest"); }).join();
+  CHECK(take_finish_reason() == "it has come to rest");
+  CHECK(take_finish_reason().empty());
+  plugin_host().finish(nullptr);
+  CHECK(take_finish_reason() == "a plugin asked for it");
+}
+
 TEST_CASE("messages reach the sink, one at a time, from any thread") {
   std::vector<std::pair<LogLevel, std::string>> messages;
   set_log_sink([&](LogLevel level, std::string_view text) { messages.emplace_back(level, text); });

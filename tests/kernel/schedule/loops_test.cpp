@@ -5,6 +5,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "hand_made.hpp"
@@ -278,4 +280,34 @@ TEST_CASE("neighbours are renewed in the outermost of the loops named") {
   CHECK(renewals_of({"minute"}, false) == 20);
   CHECK(renewals_of({"day", "hour"}, true) == 1);
   CHECK(renewals_of({"hour", "minute"}, true) == 4);
+}
+
+TEST_CASE("an operator ends the run behind the outer step in which it has had enough") {
+  static std::string said;
+  SimulationSettings wanted = settings(2, 1.0);
+  wanted.take_finish = [] { return std::exchange(said, {}); };
+  said = "somebody else's";
+  Simulation run(wanted);
+  run.add_body(lattice("b", 2, {2, 2}, 1.0));
+  const Physics physics(run);
+  physics.loop("steps", {"work"});
+  physics.attach("steps", "work", limiter(0.1));
+  Operator op;
+  op.name = "test.enough";
+  op.end = [](const shoal_step& step, const double*) {
+    if (step.number == 2) said = "enough";
+    return SHOAL_OK;
+  };
+  physics.attach("steps", "work", op);
+  run.finalise();
+  run.initialise();
+  while (!run.finished()) run.step();
+  CHECK(run.outer_steps() == 3);
+  CHECK(run.finish_reason() == "enough");
+  CHECK(run.end_time() == 1.0);
+  // Gone on by somebody who wants more.
+  run.set_finish_reason({});
+  while (!run.finished()) run.step();
+  CHECK(run.time() == 1.0);
+  CHECK(run.finish_reason().empty());
 }

@@ -245,6 +245,45 @@ TEST_CASE("a uniform stress exerts no force inside, and the area vectors close t
   check.operator()<3>(0.2, 0.02);
 }
 
+// The linear force has its own tests: it is that of the operators.
+template <int D>
+void compare_tangent() {
+  testing::Body body = solid_test::box(D, D == 2 ? 8 : 5, 0.15);
+  const solid_test::Neighbours neighbours(body);
+  const ReferenceWeights weights = weights_of(body, neighbours, solid_test::settings());
+  const Stiffness stiffness{1e6, 4e5, 2e5, 1000.0};
+  const std::size_t n = D * body.size();
+  std::vector<double> F(n * D, 0.0), out(n + 8), expected(n);
+  std::vector<std::int64_t> held(body.size(), 0);
+  for (std::size_t i = 0; i < body.size(); ++i)
+    for (std::size_t a = 0; a < D; ++a) F[i * D * D + a * D + a] = 1.0;
+  held[3] = 1;
+  AlignedNumbers u;
+  weights.random_start(u);
+  u.data()[3 * D] = 0.0;
+  LinearSpace space;
+  weights.linear_force(neighbours.list, stiffness, u.data(), out.data(), space);
+  double largest = 0;
+  for (const auto& entry : tangent(D, {weights, neighbours.list, stiffness, dx, body["volume"].data(), F.data(), held.data()})) {
+    const auto row = static_cast<std::size_t>(entry.row()), column = static_cast<std::size_t>(entry.col());
+    CHECK(row >= column);
+    expected[row] += entry.value() * u.data()[column];
+    if (row != column) expected[column] += entry.value() * u.data()[row];
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    if (k == 3 * D) continue;
+    const double exact = -body["volume"][k / D] * out[k];
+    largest = std::max(largest, std::fabs(expected[k] - exact) / (std::fabs(exact) + 1.0));
+  }
+  CHECK(largest < 1e-9);
+  CHECK(expected[3 * D] == 0.0);
+}
+
+TEST_CASE("the stiffness matrix times a displacement is the linear force") {
+  compare_tangent<2>();
+  compare_tangent<3>();
+}
+
 TEST_CASE("the largest frequency is that of the explicit step's limit") {
   testing::Body body = solid_test::box(2, 8, 0.1);
   const solid_test::Neighbours neighbours(body);

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: The Shoal authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The program with solids at rest: the run ends by itself at the state that damped motion comes to, with its probes
+// sampled there; the same bits on any number of threads and after a restart; and what a user reads.
+#include <cmath>
+
+#include "tests/app/support.hpp"
+
+using namespace app_test;
+
+namespace {
+
+struct Beam {
+  std::string physics = "solid.quasi_static: {bodies: [beam]}";
+  std::string traction = "1e3";
+  std::string end = "1 s";
+  std::string clamp = "x < dx";
+  std::string extent = "[1, 0.2]";
+};
+
+std::string text(const Beam& beam) {
+  return "shoal: 1\n"
+         "plugins: [solid]\n"
+         "dimensions: 2\n"
+         "parameters: {dx: 0.2/6}\n"
+         "resolution: $dx\n"
+         "bodies:\n"
+         "  beam:\n"
+         "    shape: {box: {lower: [-0.1, 0], upper: " +
+         beam.extent +
+         "}}\n"
+         "    material: {solid.neo_hookean: {density: 1000, youngs_modulus: 1e6, poisson_ratio: 0.3}}\n"
+         "physics:\n"
+         "  - " +
+         beam.physics +
+         "\n"
+         "  - solid.clamp: {bodies: [beam], where: \"" +
+         beam.clamp +
+         "\"}\n"
+         "  - solid.traction: {bodies: [beam], where: x > 1 - 5*dx, traction: [0, \"" +
+         beam.traction +
+         "\"]}\n"
+         "run: {end: " +
+         beam.end +
+         "}\n"
+         "probes:\n"
+         "  tip: {solid.point: {body: beam, at: [1, 0.1]}, every: 0.4 s}\n"
+         "  hold: {sum: {of: reaction_force.y, body: beam}, every: 0.4 s}\n";
+}
+
+Result run(const Beam& beam, const std::string& folder, std::vector<std::string> more = {}) {
+  write("beam.yaml", text(beam));
+  std::vector<std::string> words{"run", "beam.yaml", "-o", folder, "--force"};
+  words.insert(words.end(), more.begin(), more.end());
+  return app_test::shoal(words);
+}
+
+double tip(const std::string& folder) { return rows(folder + "/probes/tip.csv").back()[2]; }
+
+std::string refusal(const Beam& beam) {
+  write("wrong.yaml", text(beam));
+  const Result result = app_test::shoal({"run", "wrong.yaml", "-o", "wrong", "--force"});
+  CHECK(result.code != 0);
+  return result.err;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a beam comes to rest at a large deflection, where damped motion ends too, and the run ends there") {
+  const Result still = run({}, "still");
+  REQUIRE_MESSAGE(still.code == 0, still.err);
+  CHECK(contains(still.out, "ended at "));
+  CHECK(contains(still.out, "at rest: out-of-balance force "));
+  CHECK(contains(read("still/summary.json"), "\"finish_reason\": \"at rest: out-of-balance force "));
+  const auto samples = rows("still/probes/tip.csv");
+  REQUIRE(samples.size() == 2);  // the start and the end
+  CHECK(samples.back()[0] > 0.0);
+  CHECK(samples.back()[0] < 0.1);
+  CHECK(tip("still") > 0.3);
+
+  REQUIRE(run({.physics = "solid.total_lagrangian: {bodies: [beam], damping: 20}"}, "damped").code == 0);
+  CHECK(tip("still") == doctest::Approx(tip("damped")).epsilon(1e-4));
+  // The clamp bears the load: 1 kPa on 0.2 m.
+  CHECK(rows("still/probes/hold.csv").back()[1] == doctest::Approx(-200.0).epsilon(1e-4));
+}
+
+TEST_CASE("all mass matrices lead to the same state") {
+  REQUIRE(run({.traction = "100"}, "stiffness").code == 0);
+  for (const std::string mass : {"bonds", "lumped"}) {
+    const Result result =
+        run({.physics = "solid.quasi_static: {bodies: [beam], mass: " + mass + ", iterations: 20000}",
+             .traction = "100"},
+            mass);
+    REQUIRE_MESSAGE(result.code == 0, result.err);
+    CHECK(tip(mass) == doctest::Approx(tip("stiffness")).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("the same bits on one thread and two, and after restarts; a run at rest stays at rest") {
+  const Beam beam{.physics = "solid.quasi_static: {bodies: [beam], loaded_at: 0.01}",
+                  .traction = "1e3*min(t/0.01, 1)"};
+  REQUIRE(run(beam, "one", {"--threads", "1"}).code == 0);
+  REQUIRE(run(beam, "two", {"--threads", "2"}).code == 0);
+  CHECK(read("one/probes/tip.csv") == read("two/probes/tip.csv"));
+  CHECK(rows("one/probes/tip.csv").back()[0] > 0.01);
+
+  REQUIRE(run(beam, "parts", {"--steps", "11"}).code == 0);
+  REQUIRE(app_test::shoal({"resume", "parts", "--steps", "10"}).code == 0);
+  REQUIRE(app_test::shoal({"resume", "parts"}).code == 0);
+  CHECK(read("one/probes/tip.csv") == read("parts/probes/tip.csv"));
+
+  const Result again = app_test::shoal({"resume", "parts"});
+  CHECK(again.code == 0);
+  CHECK(contains(again.out, "at rest: out-of-balance force "));
+  CHECK(read("one/probes/tip.csv") == read("parts/probes/tip.csv"));
+  // Somebody who wants more gets it.
+  REQUIRE(app_test::shoal({"resume", "parts", "--until", "0.5"}).code == 0);
+  CHECK(rows("parts/probes/tip.csv").size() > rows("one/probes/tip.csv").size());
+}
+
+TEST_CASE("what does not come to rest says so") {
+  CHECK(contains(refusal({.physics = "solid.quasi_static: {bodies: [beam], iterations: 3}"}),
+                 "no rest after 3 iterations: out-of-balance force "));
+  CHECK(contains(refusal({.physics = "solid.quasi_static: {bodies: [beam], loaded_at: 2}"}),
+                 "loaded_at is behind the end of the run"));
+  // Nothing holds it, and it flies.
+  CHECK(contains(refusal({.clamp = "x > 10"}), "has left the domain"));
+}
+
+TEST_CASE("a case in motion has nothing of the relaxation in its plan") {
+  write("still.yaml", text({}));
+  write("moving.yaml", text({.physics = "solid.total_lagrangian: {bodies: [beam]}"}));
+  const std::string still = app_test::shoal({"plan", "still.yaml"}).out;
+  const std::string moving = app_test::shoal({"plan", "moving.yaml"}).out;
+  CHECK(contains(still, "solid.relaxation"));
+  CHECK(contains(still, "held_axes"));
+  CHECK_FALSE(contains(still, "solid.drift"));
+  CHECK_FALSE(contains(moving, "held_axes"));
+  CHECK_FALSE(contains(moving, "relaxation"));
+}
