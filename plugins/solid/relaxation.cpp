@@ -92,12 +92,14 @@ void Relaxation::look_at_mass() {
     mass_.kind = kind;
     mass_.connect(dimensions(), neighbours(0), reference_position.data(), spacing(),
                   structure->constants.shear_modulus);
-    if (state_.started == 1) return assemble();  // gone on from a checkpoint
-    std::fill_n(momentum.data(), n, 0.0);
-    std::fill_n(velocity.data(), n, 0.0);
-    remember();
-    state_ = {1, step().number, largest_square() / largest_square_wanted};
-    return;
+    if (state_.started == 0) {
+      std::fill_n(momentum.data(), n, 0.0);
+      std::fill_n(velocity.data(), n, 0.0);
+      remember();
+      state_ = {1, step().number, largest_square() / largest_square_wanted};
+      return;
+    }
+    assemble();  // gone on from a checkpoint
   }
   const double changed = mass_.changed(position.data());
   const bool slow = step().number >= state_.assembled_at + slow_iterations && changed > slightly_turned_bond;

@@ -10,6 +10,7 @@
 #include "pair_sums.hpp"
 #include "particles.hpp"
 #include "shoal/smoothing_kernel.hpp"
+#include "tangent.hpp"
 
 using namespace shoal;
 using namespace shoal::solid;
@@ -264,7 +265,8 @@ void compare_tangent() {
   LinearSpace space;
   weights.linear_force(neighbours.list, stiffness, u.data(), out.data(), space);
   double largest = 0;
-  for (const auto& entry : tangent(D, {weights, neighbours.list, stiffness, dx, body["volume"].data(), F.data(), held.data()})) {
+  for (const auto& entry :
+       tangent(D, {weights, neighbours.list, stiffness, dx, body["volume"].data(), F.data(), held.data()})) {
     const auto row = static_cast<std::size_t>(entry.row()), column = static_cast<std::size_t>(entry.col());
     CHECK(row >= column);
     expected[row] += entry.value() * u.data()[column];

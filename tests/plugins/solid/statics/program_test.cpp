@@ -13,7 +13,7 @@ namespace {
 
 struct Beam {
   std::string physics = "solid.quasi_static: {bodies: [beam]}";
-  std::string traction = "1e3";
+  std::string traction = "5e3";
   std::string end = "1 s";
   std::string clamp = "x < dx";
   std::string extent = "[1, 0.2]";
@@ -25,6 +25,7 @@ std::string text(const Beam& beam) {
          "dimensions: 2\n"
          "parameters: {dx: 0.2/6}\n"
          "resolution: $dx\n"
+         "domain: {lower: [-1, -1], upper: [2, 2]}\n"
          "bodies:\n"
          "  beam:\n"
          "    shape: {box: {lower: [-0.1, 0], upper: " +
@@ -80,10 +81,11 @@ TEST_CASE(
   CHECK(samples.back()[0] < 0.1);
   CHECK(tip("still") > 0.3);
 
-  REQUIRE(run({.physics = "solid.total_lagrangian: {bodies: [beam], damping: 20}"}, "damped").code == 0);
+  REQUIRE(run({.physics = "solid.total_lagrangian: {bodies: [beam], damping: 13}", .end = "3 s"}, "damped")
+              .code == 0);
   CHECK(tip("still") == doctest::Approx(tip("damped")).epsilon(1e-4));
-  // The clamp bears the load: 1 kPa on 0.2 m.
-  CHECK(rows("still/probes/hold.csv").back()[1] == doctest::Approx(-200.0).epsilon(1e-4));
+  // The clamp bears the load: 5 kPa on 0.2 m.
+  CHECK(rows("still/probes/hold.csv").back()[1] == doctest::Approx(-1000.0).epsilon(1e-4));
 }
 
 TEST_CASE("all mass matrices lead to the same state") {
@@ -100,7 +102,7 @@ TEST_CASE("all mass matrices lead to the same state") {
 
 TEST_CASE("the same bits on one thread and two, and after restarts; a run at rest stays at rest") {
   const Beam beam{.physics = "solid.quasi_static: {bodies: [beam], loaded_at: 0.01}",
-                  .traction = "1e3*min(t/0.01, 1)"};
+                  .traction = "5e3*min(t/0.01, 1)"};
   REQUIRE(run(beam, "one", {"--threads", "1"}).code == 0);
   REQUIRE(run(beam, "two", {"--threads", "2"}).code == 0);
   CHECK(read("one/probes/tip.csv") == read("two/probes/tip.csv"));
@@ -125,8 +127,6 @@ TEST_CASE("what does not come to rest says so") {
                  "no rest after 3 iterations: out-of-balance force "));
   CHECK(contains(refusal({.physics = "solid.quasi_static: {bodies: [beam], loaded_at: 2}"}),
                  "loaded_at is behind the end of the run"));
-  // Nothing holds it, and it flies.
-  CHECK(contains(refusal({.clamp = "x > 10"}), "has left the domain"));
 }
 
 TEST_CASE("a case in motion has nothing of the relaxation in its plan") {
@@ -137,6 +137,6 @@ TEST_CASE("a case in motion has nothing of the relaxation in its plan") {
   CHECK(contains(still, "solid.relaxation"));
   CHECK(contains(still, "held_axes"));
   CHECK_FALSE(contains(still, "solid.drift"));
-  CHECK_FALSE(contains(moving, "held_axes"));
+  CHECK(contains(moving, "solid.held_axes on beam"));  // among what is not computed
   CHECK_FALSE(contains(moving, "relaxation"));
 }
