@@ -8,7 +8,7 @@
 //                    reference configuration: against impact noise; it keeps momentum and angular momentum
 #pragma once
 
-#include "pair_sums.hpp"
+#include "reference_weights.hpp"
 #include "shoal/pair_operator.hpp"
 #include "shoal/particle_operator.hpp"
 #include "structure.hpp"

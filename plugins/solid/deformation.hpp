@@ -11,7 +11,7 @@
 
 #include <algorithm>
 
-#include "pair_sums.hpp"
+#include "stencils.hpp"
 #include "structure.hpp"
 
 namespace shoal::solid {
@@ -31,12 +31,10 @@ struct DeformationGradient : WeightBuilder {
   void run_chunk(const shoal_chunk& chunk) const {
     const double* x = position.of_neighbours(0);
     double *gradient = F.data(), *q = hourglass.data();
-    for (std::uint64_t i = chunk.begin; i < chunk.end; ++i) {
-      const auto [f, residual] =
-          deformation<D>(row_of(neighbours(0), i), structure->weights.forward(i), x, i);
-      std::copy_n(f.e, D * D, gradient + i * D * D);
-      for (int a = 0; a < D; ++a) q[i * D + static_cast<std::uint64_t>(a)] = stiffness_ * residual[a];
-    }
+    structure->weights.for_each_run(chunk.begin, chunk.end,
+                                    [&](std::uint64_t begin, std::uint64_t end, const Stencil& stencil) {
+                                      deform_run<D>(stencil, begin, end, x, stiffness_, gradient, q);
+                                    });
   }
 
  private:

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "monomials.hpp"
-#include "pair_sums.hpp"
+#include "reference_weights.hpp"
 #include "shoal/smoothing_kernel.hpp"
 
 namespace shoal::solid {

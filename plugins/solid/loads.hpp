@@ -40,7 +40,7 @@ struct SurfaceArea : WeightBuilder {
   void run_chunk(const shoal_chunk& chunk) const {
     for (std::uint64_t k = chunk.begin; k < chunk.end; ++k) {
       const Particle<D> i{k, nullptr};
-      structure->weights.residual(k, neighbours(0).counts[k], area[i].e);
+      structure->weights.residual(k, area[i].e);
       area[i] *= -volume[i];
     }
   }

@@ -19,7 +19,7 @@
 #include <cmath>
 #include <vector>
 
-#include "pair_sums.hpp"
+#include "reference_weights.hpp"
 #include "shoal/eigen.hpp"
 #include "stress.hpp"
 

@@ -8,7 +8,7 @@
 // energy by a symplectic integrator to its order.
 #pragma once
 
-#include "pair_sums.hpp"
+#include "stencils.hpp"
 #include "structure.hpp"
 
 namespace shoal::solid {
@@ -37,12 +37,10 @@ struct InternalForce : ReferenceOperator {
     const double *stress = P.of_neighbours(0), *q = hourglass.of_neighbours(0);
     const double per_density = 1.0 / structure->constants.density;
     double* a = acceleration.data();
-    const ReferenceWeights& weights = structure->weights;
-    for (std::uint64_t i = chunk.begin; i < chunk.end; ++i) {
-      const Vec<D> f =
-          force<D, Hourglass>(row_of(neighbours(0), i), weights.backward(i), weights.sums(i), stress, q, i);
-      for (int k = 0; k < D; ++k) a[i * D + static_cast<std::uint64_t>(k)] = per_density * f[k];
-    }
+    structure->weights.for_each_run(chunk.begin, chunk.end,
+                                    [&](std::uint64_t begin, std::uint64_t end, const Stencil& stencil) {
+                                      force_run<D, Hourglass>(stencil, begin, end, stress, q, per_density, a);
+                                    });
   }
 };
 

@@ -19,15 +19,19 @@
 // quadratic fit, and if `quadratic` is off, G is that of Bonet and Lok (1999), exact for linear fields:
 //   G_ij = V_j B_i grad W_ij,   B_i = (sum_j V_j (X_j - X_i) (x) grad W_ij)^-1.
 //
-// Both weights of both directions are kept, 16 (D + 1) bytes a pair: recomputing those of j would need its moments.
+// Both weights of both directions are kept with the differences of numbers j - i, as a stencil (stencils.hpp). Particles
+// of a lattice share stencils: weights that differ by rounding are made the same, so that a body of any size needs a few
+// hundred of them. Disordered ones need 16 (D + 1) + 4 bytes a pair.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <new>
 #include <vector>
 
 #include "shoal/abi.h"
+#include "stencils.hpp"
 
 namespace shoal::solid {
 
@@ -79,6 +83,17 @@ struct LinearSpace {
   AlignedNumbers stress, held;
 };
 
+// Row i of a neighbour list.
+struct Row {
+  const std::uint32_t* j;
+  std::uint32_t n;
+};
+inline Row row_of(const shoal_neighbours& list, std::uint64_t i) {
+  return {list.indices + list.offsets[i], list.counts[i]};
+}
+
+class ReferenceRows;
+
 class ReferenceWeights {
  public:
   bool built() const { return n_ > 0; }
@@ -86,42 +101,61 @@ class ReferenceWeights {
   void build(int dimensions, const ReferenceSettings& settings, const shoal_neighbours& list,
              const ReferenceGeometry& geometry);
 
-  // Weights of the pairs of row i, `stride` numbers each: G, then psi.
-  const double* forward(std::uint64_t i) const { return forward_.data() + offsets_[i] * stride_; }
-  // The same of the neighbours towards i, V_j / V_i G_ji, V_j / V_i psi_ji.
-  const double* backward(std::uint64_t i) const { return backward_.data() + offsets_[i] * stride_; }
-  // Sums of the forward weights of row i.
-  const double* sums(std::uint64_t i) const { return sums_.data() + i * stride_; }
+  Stencil stencil(std::uint64_t i) const { return stencil_of(run_of(i)->pattern); }
+  // function(a, b, stencil) for pieces of begin ... end - 1 with one stencil each.
+  template <class Function>
+  void for_each_run(std::uint64_t begin, std::uint64_t end, const Function& function) const {
+    if (begin >= end) return;
+    for (const Run* run = run_of(begin); begin < end; ++run) {
+      const std::uint64_t stop = std::min<std::uint64_t>(end, run[1].begin);
+      function(begin, stop, stencil_of(run->pattern));
+      begin = stop;
+    }
+  }
+  std::size_t n_patterns() const { return patterns_.size(); }
 
   // Largest angular frequency (rad/s) of the undeformed discrete body, by power iteration; a per cent or so from below.
-  double largest_frequency(const shoal_neighbours& list, const Stiffness& stiffness) const;
+  double largest_frequency(const Stiffness& stiffness) const;
   // Force per volume (N/m3) of small displacements u (m) of the undeformed body.
-  void linear_force(const shoal_neighbours& list, const Stiffness& stiffness, const double* u, double* out,
-                    LinearSpace& space) const;
+  void linear_force(const Stiffness& stiffness, const double* u, double* out, LinearSpace& space) const;
   // Displacements without any symmetry, to begin a power iteration with.
   void random_start(AlignedNumbers& u) const;
   // sum_j (G_ij - V_j / V_i G_ji) of particle i, 1/m: the force of a uniform stress, zero for no force.
-  void residual(std::uint64_t i, std::uint32_t count, double* out) const;
+  void residual(std::uint64_t i, double* out) const;
   std::uint64_t bytes() const;
   const ForceConsistency& consistency() const { return consistency_; }
 
  private:
+  struct Run {
+    std::uint32_t begin, pattern;  // ends where the next begins
+  };
+  struct Pattern {
+    std::uint32_t n;
+    std::uint64_t first;  // pair
+  };
+  const Run* run_of(std::uint64_t i) const {
+    return std::upper_bound(runs_.data(), runs_.data() + runs_.size(), i,
+                            [](std::uint64_t k, const Run& run) { return k < run.begin; }) -
+           1;
+  }
+  Stencil stencil_of(std::uint32_t pattern) const {
+    const Pattern& known = patterns_[pattern];
+    return {known.n, offsets_.data() + known.first, forward_.data() + known.first * stride_,
+            backward_.data() + known.first * stride_, sums_.data() + pattern * stride_};
+  }
   template <int D>
-  void fill(const ReferenceSettings& settings, const shoal_neighbours& list,
-            const ReferenceGeometry& geometry);
-  template <int D>
-  void mirror(const shoal_neighbours& list, const double* volume);
-  template <int D>
-  void linear_force(const shoal_neighbours& list, const Stiffness& stiffness, const double* u, double* out,
-                    LinearSpace& space) const;
+  void linear_force(const Stiffness& stiffness, const double* u, double* out, LinearSpace& space) const;
+  void keep(const ReferenceRows& rows, const double* volume);
 
   std::uint64_t n_ = 0;
   int dimensions_ = 0;
   std::size_t stride_ = 0;
   double spacing_ = 0;
   ForceConsistency consistency_;
-  std::vector<std::uint64_t> offsets_;
-  AlignedNumbers forward_, backward_, sums_;
+  std::vector<Run> runs_;  // and one behind the last particle
+  std::vector<Pattern> patterns_;
+  std::vector<std::int32_t> offsets_;
+  std::vector<double> forward_, backward_, sums_;  // and a few behind the last: loads of four begin there too
 };
 
 }  // namespace shoal::solid

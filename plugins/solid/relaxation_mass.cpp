@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "pair_sums.hpp"
 #include "shoal/host.hpp"
 
 namespace shoal::solid {

@@ -6,8 +6,8 @@
 //   f_i = sum_j [P_i G_ij - V_j / V_i P_j G_ji] - sum_j [q_i psi_ij - V_j / V_i q_j psi_ji].
 //
 // The neighbours of a particle and their weights are a stencil: differences of numbers j - i, and the weights. On a
-// lattice, particles that stand next to each other in the body's order have the same one, so SIMD runs over eight such
-// particles, whose neighbours stand next to each other too: loads without gathering, weights from cache, no sum across
+// lattice, particles that stand next to each other in the body's order have the same one, so SIMD runs over a group of
+// such particles, whose neighbours stand next to each other too: loads without gathering, weights from cache, no sum across
 // lanes before the end. Elsewhere SIMD runs over the components of a neighbour's matrices: one load and D fused
 // multiply-adds a pair for F and the hourglass residual together, D + 1 loads for the force. Loads of 4 numbers reach
 // one or two beyond a vector or a weight; arrays are padded, and the lanes are not used.
@@ -23,7 +23,13 @@
 
 namespace shoal::solid {
 
-typedef double V8 __attribute__((vector_size(64)));
+// Particles that are looked at together: as many as a register holds numbers.
+#ifdef __AVX512F__
+inline constexpr int group = 8;
+#else
+inline constexpr int group = 4;
+#endif
+typedef double VG __attribute__((vector_size(8 * group)));
 typedef double V4 __attribute__((vector_size(32)));
 typedef double V2 __attribute__((vector_size(16)));
 
@@ -135,73 +141,126 @@ Vec<D> force(const Stencil& stencil, const double* P, const double* q, std::uint
   return f;
 }
 
-// -- eight particles, one after the other, with the same stencil ---------------------------------------------------
+// -- a group of particles, one after the other, with the same stencil ----------------------------------------------
 
-// F (row by row) and residual times `stiffness` of particles i ... i + 7.
+// F (row by row) and residual times `stiffness` of particles i ... i + group - 1.
 template <int D>
 void deformations(const Stencil& stencil, const double* x, double stiffness, std::uint64_t i, double* F,
                   double* q) {
-  V8 own[D], sum[D + 1][D] = {};
-  for (int v = 0; v < D; ++v) load(own[v], x + i * D + 8 * v);
+  VG own[D], sum[D + 1][D] = {};
+  for (int v = 0; v < D; ++v) load(own[v], x + i * D + static_cast<std::uint64_t>(group * v));
   const double* w = stencil.forward;
   for (std::uint32_t m = 0; m < stencil.n; ++m, w += D + 1) {
     const double* theirs = x + (static_cast<std::ptrdiff_t>(i) + stencil.offset[m]) * D;
     for (int v = 0; v < D; ++v) {
-      V8 difference;
-      load(difference, theirs + 8 * v);
+      VG difference;
+      load(difference, theirs + group * v);
       difference -= own[v];
       for (int c = 0; c <= D; ++c) sum[c][v] += difference * w[c];
     }
   }
   for (int c = 0; c < D; ++c) {
-    double column[8 * D];
+    double column[group * D];
     std::memcpy(column, sum[c], sizeof column);
-    for (int k = 0; k < 8 * D; ++k) F[i * D * D + static_cast<std::size_t>(k * D + c)] = column[k];
+    for (int k = 0; k < group * D; ++k) F[i * D * D + static_cast<std::size_t>(k * D + c)] = column[k];
   }
   for (int v = 0; v < D; ++v) {
-    const V8 held = -stiffness * sum[D][v];
-    std::memcpy(q + i * D + 8 * v, &held, sizeof held);
+    const VG held = -stiffness * sum[D][v];
+    std::memcpy(q + i * D + static_cast<std::uint64_t>(group * v), &held, sizeof held);
   }
 }
 
-// What `force` gives, times `factor`, of particles i ... i + 7. Lanes hold the components of P one after the other, so
+// What `force` gives, times `factor`, of particles i ... i + group - 1. Lanes hold the components of P one after the other, so
 // weights repeat with period D.
 template <int D, bool Hourglass>
 void forces(const Stencil& stencil, const double* P, const double* q, double factor, std::uint64_t i,
             double* out) {
-  V8 sum[D * D], held[D];
-  const auto spread = [](const double* w, V8* pattern) {
+  VG sum[D * D], held[D];
+  const auto spread = [](const double* w, VG* pattern) {
+    V4 four;
+    load(four, w);
+#ifdef __AVX512F__
     if constexpr (D == 2) {
-      pattern[0] = V8{w[0], w[1], w[0], w[1], w[0], w[1], w[0], w[1]};
+      pattern[0] = __builtin_shufflevector(four, four, 0, 1, 0, 1, 0, 1, 0, 1);
     } else {
-      pattern[0] = V8{w[0], w[1], w[2], w[0], w[1], w[2], w[0], w[1]};
-      pattern[1] = V8{w[2], w[0], w[1], w[2], w[0], w[1], w[2], w[0]};
-      pattern[2] = V8{w[1], w[2], w[0], w[1], w[2], w[0], w[1], w[2]};
+      pattern[0] = __builtin_shufflevector(four, four, 0, 1, 2, 0, 1, 2, 0, 1);
+      pattern[1] = __builtin_shufflevector(four, four, 2, 0, 1, 2, 0, 1, 2, 0);
+      pattern[2] = __builtin_shufflevector(four, four, 1, 2, 0, 1, 2, 0, 1, 2);
     }
+#else
+    if constexpr (D == 2) {
+      pattern[0] = __builtin_shufflevector(four, four, 0, 1, 0, 1);
+    } else {
+      pattern[0] = __builtin_shufflevector(four, four, 0, 1, 2, 0);
+      pattern[1] = __builtin_shufflevector(four, four, 1, 2, 0, 1);
+      pattern[2] = __builtin_shufflevector(four, four, 2, 0, 1, 2);
+    }
+#endif
   };
   constexpr int patterns = D == 2 ? 1 : 3;
-  V8 pattern[patterns], value;
+  VG pattern[patterns], value;
   spread(stencil.sums, pattern);
-  for (int v = 0; v < D * D; ++v) load(value, P + i * D * D + 8 * v), sum[v] = value * pattern[v % patterns];
+  for (int v = 0; v < D * D; ++v)
+    load(value, P + i * D * D + static_cast<std::uint64_t>(group * v)),
+        sum[v] = value * pattern[v % patterns];
   if constexpr (Hourglass)
-    for (int v = 0; v < D; ++v) load(value, q + i * D + 8 * v), held[v] = value * stencil.sums[D];
+    for (int v = 0; v < D; ++v)
+      load(value, q + i * D + static_cast<std::uint64_t>(group * v)), held[v] = value * stencil.sums[D];
   const double* w = stencil.backward;
   for (std::uint32_t m = 0; m < stencil.n; ++m, w += D + 1) {
     const std::ptrdiff_t j = static_cast<std::ptrdiff_t>(i) + stencil.offset[m];
     spread(w, pattern);
     for (int v = 0; v < D * D; ++v)
-      load(value, P + j * D * D + 8 * v), sum[v] -= value * pattern[v % patterns];
+      load(value, P + j * D * D + group * v), sum[v] -= value * pattern[v % patterns];
     if constexpr (Hourglass)
-      for (int v = 0; v < D; ++v) load(value, q + j * D + 8 * v), held[v] -= value * w[D];
+      for (int v = 0; v < D; ++v) load(value, q + j * D + group * v), held[v] -= value * w[D];
   }
-  double stress[8 * D * D], control[8 * D] = {};
+  double stress[group * D * D], control[group * D] = {};
   std::memcpy(stress, sum, sizeof stress);
   if constexpr (Hourglass) std::memcpy(control, held, sizeof control);
-  for (int k = 0; k < 8 * D; ++k) {
+  for (int k = 0; k < group * D; ++k) {
     double f = -control[k];
     for (int c = 0; c < D; ++c) f += stress[k * D + c];
     out[i * D + static_cast<std::size_t>(k)] = factor * f;
   }
+}
+
+// -- particles begin ... end - 1 with one stencil ------------------------------------------------------------------
+
+// Calls many(i) for particles i ... i + group - 1, or one(i); the last group overlaps the one before where they do not
+// come out even, which computes the same numbers twice.
+template <class Many, class One>
+void in_groups(std::uint64_t begin, std::uint64_t end, const Many& many, const One& one) {
+  std::uint64_t i = begin;
+  if (end - begin < group) {
+    for (; i < end; ++i) one(i);
+    return;
+  }
+  for (; i + group <= end; i += group) many(i);
+  if (i < end) many(end - group);
+}
+
+template <int D>
+void deform_run(const Stencil& stencil, std::uint64_t begin, std::uint64_t end, const double* x,
+                double stiffness, double* F, double* q) {
+  in_groups(
+      begin, end, [&](std::uint64_t i) { deformations<D>(stencil, x, stiffness, i, F, q); },
+      [&](std::uint64_t i) {
+        const auto [gradient, residual] = deformation<D>(stencil, x, i);
+        std::memcpy(F + i * D * D, gradient.e, sizeof gradient.e);
+        for (int a = 0; a < D; ++a) q[i * D + static_cast<std::size_t>(a)] = stiffness * residual[a];
+      });
+}
+
+template <int D, bool Hourglass>
+void force_run(const Stencil& stencil, std::uint64_t begin, std::uint64_t end, const double* P,
+               const double* q, double factor, double* out) {
+  in_groups(
+      begin, end, [&](std::uint64_t i) { forces<D, Hourglass>(stencil, P, q, factor, i, out); },
+      [&](std::uint64_t i) {
+        const Vec<D> f = force<D, Hourglass>(stencil, P, q, i);
+        for (int a = 0; a < D; ++a) out[i * D + static_cast<std::size_t>(a)] = factor * f[a];
+      });
 }
 
 }  // namespace shoal::solid

@@ -109,7 +109,7 @@ struct StableStep : WeightBuilder {
   double time_step(double) const {
     if (limit_ == 0.0) {
       build_weights();
-      const double w = structure->weights.largest_frequency(neighbours(0), structure->stiffness());
+      const double w = structure->weights.largest_frequency(structure->stiffness());
       const double c = structure->constants.longitudinal_speed;
       const double ratio = viscosity * w / (structure->constants.density * c * c);  // of critical damping
       limit_ = 2.0 / w * (std::sqrt(1.0 + ratio * ratio) - ratio);

@@ -4,7 +4,6 @@
 
 #include <Eigen/Dense>
 
-#include "pair_sums.hpp"
 #include "shoal/eigen.hpp"
 
 namespace shoal::solid {
@@ -37,7 +36,7 @@ class Assembly {
   explicit Assembly(const TangentInput& input) : in_(input) {}
 
   std::vector<Eigen::Triplet<double>> run() {
-    for (std::uint64_t i = 0; i < in_.list.n_rows; ++i) particle(i);
+    for (std::uint64_t i = 0; i < in_.n; ++i) particle(i);
     return std::move(entries_);
   }
 
@@ -49,17 +48,18 @@ class Assembly {
   };
 
   void particle(std::uint64_t i) {
-    const Row row = row_of(in_.list, i);
+    const Stencil stencil = in_.weights.stencil(i);
     const Mat<D> R = rotation<D>(in_.F + i * D * D);
-    const double *w = in_.weights.forward(i), *sums = in_.weights.sums(i);
     around_.clear();
     const auto add = [&](std::uint64_t j, const double* g, double sign) {
       Vec<D> G;
       for (int a = 0; a < D; ++a) G[a] = sign * g[a];
       around_.push_back({j, G, sign * g[D]});
     };
-    for (std::uint32_t m = 0; m < row.n; ++m) add(row.j[m], w + m * (D + 1), 1.0);
-    add(i, sums, -1.0);
+    for (std::uint32_t m = 0; m < stencil.n; ++m)
+      add(static_cast<std::uint64_t>(static_cast<std::int64_t>(i) + stencil.offset[m]),
+          stencil.forward + m * (D + 1), 1.0);
+    add(i, stencil.sums, -1.0);
     const double V = in_.volume[i], lambda = V * in_.stiffness.lambda, mu = V * in_.stiffness.mu;
     const double hourglass = V * in_.stiffness.hourglass / (in_.spacing * in_.spacing);
     for (Weight& weight : around_) turned_.push_back(R * weight.G);

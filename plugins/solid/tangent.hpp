@@ -18,7 +18,7 @@ namespace shoal::solid {
 
 struct TangentInput {
   const ReferenceWeights& weights;
-  const shoal_neighbours& list;
+  std::uint64_t n;  // particles
   Stiffness stiffness;
   double spacing;  // m
   const double* volume;

@@ -63,7 +63,6 @@ void TotalLagrangian::build(const Builder& b) {
   declare_loop(b);
   for (const BodyIndex body : bodies.value()) {
     const MovingBody solid(b, *this, body);
-    b.body_moves(body);
     const shoal_elastic_constants& constants = solid.structure->constants;
     b.note(std::string(b.body(body).name) + ": speed of longitudinal waves " +
            number(constants.longitudinal_speed) + " m/s, of shear waves " + number(constants.shear_speed) +

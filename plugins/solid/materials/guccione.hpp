@@ -8,6 +8,7 @@
 //   T = dW/dE = c/2 exp Q dQ/dE,   P = J^(-2/3) (F T - (T : C)/3 F^-T) + K/2 (J^2 - 1) F^-T
 #pragma once
 
+#include "shoal/pack_math.hpp"
 #include "shoal/stress_law.hpp"
 #include "tensors.hpp"
 
@@ -41,7 +42,7 @@ class Guccione final : public StressLaw {
     const Tensor mixed = outer(Ef, f);
     const Tensor dQ = (2.0 * b_t) * E + (2.0 * along() * E_ff) * outer(f, f) +
                       (2.0 * (b_fs - b_t)) * (mixed + transpose(mixed));
-    const Tensor T = (0.5 * c * exp(exponent(E, Ef, E_ff))) * dQ;
+    const Tensor T = (0.5 * c * fast_exp(exponent(E, Ef, E_ff))) * dQ;
     return shape * (F * T) + (volumetric_kirchhoff(bulk, J) - shape * double_dot(T, C) / 3.0) * back;
   }
   Pack energy(const Tensor& F, LawPoint& point) const override {
@@ -49,7 +50,7 @@ class Guccione final : public StressLaw {
     const Vec<3, Pack> f = point(fibre_);
     const Tensor E = strain(isochoric_factor(J), right_cauchy_green(F));
     const Vec<3, Pack> Ef = E * f;
-    return 0.5 * c * (exp(exponent(E, Ef, dot(f, Ef))) - 1.0) + volumetric_energy(bulk, J);
+    return 0.5 * c * (fast_exp(exponent(E, Ef, dot(f, Ef))) - 1.0) + volumetric_energy(bulk, J);
   }
   Pack volumetric_pressure(Pack J) const override { return pressure_of_split_law(bulk, J); }
   bool stiffens() const override { return true; }

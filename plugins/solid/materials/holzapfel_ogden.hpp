@@ -11,6 +11,7 @@
 // Undeformed: mu = a, K = lambda + 2 a b + 2/3 a, besides what the fibres add.
 #pragma once
 
+#include "shoal/pack_math.hpp"
 #include "shoal/stress_law.hpp"
 #include "tensors.hpp"
 
@@ -64,26 +65,26 @@ class HolzapfelOgden final : public StressLaw {
 
   Tensor stress(const Tensor& F, LawPoint& point) const override {
     const auto [J, back] = invert(F);
-    const Pack ground = a.value() * exp(b.value() * (double_dot(F, F) - 3.0));
-    Tensor P = ground * F + (lambda() * log(J) - a.value()) * back;
+    const Pack ground = a.value() * fast_exp(b.value() * (double_dot(F, F) - 3.0));
+    Tensor P = ground * F + (lambda() * fast_log(J) - a.value()) * back;
     if (!has_fibres()) return P;
     const Vec<3, Pack> f = point(fibre_), s = point(sheet_), Ff = F * f, Fs = F * s;
     P += outer(along(a_f, b_f, squared_norm(Ff)) * Ff, f) + outer(along(a_s, b_s, squared_norm(Fs)) * Fs, s);
     if (a_fs > 0.0) {
       const Pack I_fs = dot(Ff, Fs);
-      P += (a_fs.value() * I_fs * exp(b_fs.value() * I_fs * I_fs)) * (outer(Ff, s) + outer(Fs, f));
+      P += (a_fs.value() * I_fs * fast_exp(b_fs.value() * I_fs * I_fs)) * (outer(Ff, s) + outer(Fs, f));
     }
     return P;
   }
   Pack energy(const Tensor& F, LawPoint& point) const override {
-    const Pack ln_J = log(determinant(F));
-    Pack W = 0.5 * a / b * (exp(b.value() * (double_dot(F, F) - 3.0)) - 1.0) - a.value() * ln_J +
+    const Pack ln_J = fast_log(determinant(F));
+    Pack W = 0.5 * a / b * (fast_exp(b.value() * (double_dot(F, F) - 3.0)) - 1.0) - a.value() * ln_J +
              0.5 * lambda() * ln_J * ln_J;
     if (!has_fibres()) return W;
     const Vec<3, Pack> Ff = F * point(fibre_), Fs = F * point(sheet_);
     const Pack I_fs = dot(Ff, Fs);
     W += energy_along(a_f, b_f, squared_norm(Ff)) + energy_along(a_s, b_s, squared_norm(Fs)) +
-         0.5 * a_fs / b_fs * (exp(b_fs.value() * I_fs * I_fs) - 1.0);
+         0.5 * a_fs / b_fs * (fast_exp(b_fs.value() * I_fs * I_fs) - 1.0);
     return W;
   }
   bool stiffens() const override { return true; }
@@ -95,12 +96,12 @@ class HolzapfelOgden final : public StressLaw {
   Pack along(double stiffness, double exponent, Pack I) const {
     if (stiffness == 0.0) return 0.0;
     const Pack e = pull(I);
-    return 2.0 * stiffness * e * exp(exponent * e * e);
+    return 2.0 * stiffness * e * fast_exp(exponent * e * e);
   }
   Pack energy_along(double stiffness, double exponent, Pack I) const {
     if (stiffness == 0.0) return 0.0;
     const Pack e = pull(I);
-    return 0.5 * stiffness / exponent * (exp(exponent * e * e) - 1.0);
+    return 0.5 * stiffness / exponent * (fast_exp(exponent * e * e) - 1.0);
   }
 
   LawDirection fibre_{*this, "fibre", fibre};

@@ -24,14 +24,14 @@ class NeoHookean final : public IsotropicLaw {
 
   Tensor stress(const Tensor& F, LawPoint&) const override {
     const auto [J, back] = invert(F);
-    if (coupled()) return mu() * F + (lambda() * log(J) - mu()) * back;
+    if (coupled()) return mu() * F + (lambda() * fast_log(J) - mu()) * back;
     const Pack shape = mu() * isochoric_factor(J);
     return shape * F + (volumetric_kirchhoff(bulk_modulus(), J) - shape * double_dot(F, F) / 3.0) * back;
   }
   Pack energy(const Tensor& F, LawPoint&) const override {
     const Pack J = determinant(F), trace_C = double_dot(F, F);
     if (coupled()) {
-      const Pack ln_J = log(J);
+      const Pack ln_J = fast_log(J);
       return 0.5 * mu() * (trace_C - 3.0) - mu() * ln_J + 0.5 * lambda() * ln_J * ln_J;
     }
     return 0.5 * mu() * (isochoric_factor(J) * trace_C - 3.0) + volumetric_energy(bulk_modulus(), J);

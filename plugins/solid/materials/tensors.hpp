@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "shoal/pack_math.hpp"
 #include "shoal/vec.hpp"
 
 namespace shoal::solid {
@@ -31,13 +32,10 @@ inline Inverted invert(const Tensor& F) {
 inline Tensor right_cauchy_green(const Tensor& F) { return transpose(F) * F; }
 
 // J^(-2/3)
-inline Pack isochoric_factor(Pack J) {
-  const Pack root = J.each([](double x) { return std::cbrt(x); });
-  return 1.0 / (root * root);
-}
+inline Pack isochoric_factor(Pack J) { return fast_exp((-2.0 / 3.0) * fast_log(J)); }
 
 // U(J) = K/4 (J^2 - 1 - 2 ln J) (Simo, Taylor 1982): grows without bound for J -> 0 and J -> infinity. J U'(J).
-inline Pack volumetric_energy(double K, Pack J) { return 0.25 * K * (J * J - 1.0 - 2.0 * log(J)); }
+inline Pack volumetric_energy(double K, Pack J) { return 0.25 * K * (J * J - 1.0 - 2.0 * fast_log(J)); }
 inline Pack volumetric_kirchhoff(double K, Pack J) { return 0.5 * K * (J * J - 1.0); }
 inline Pack pressure_of_split_law(double K, Pack J) { return -0.5 * K * (J - 1.0 / J); }
 

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <array>
 
-#include "pair_sums.hpp"
 #include "particles.hpp"
+#include "reference_weights.hpp"
 #include "shoal/smoothing_kernel.hpp"
 #include "tangent.hpp"
 
@@ -94,8 +94,7 @@ void compare_with_fit(double disorder) {
     for (int a = 0; a < D; ++a) values.push_back(f.back());
   }
   for (std::size_t i = 0; i < body.size(); i += 5) {
-    const auto [gradient, residual] =
-        deformation<D>(row_of(neighbours.list, i), weights.forward(i), values.data(), i);
+    const auto [gradient, residual] = deformation<D>(weights.stencil(i), values.data(), i);
     const auto expected = fit<D>(body, f, i, false, settings.eps);
     for (int a = 0; a < D; ++a)
       CHECK(gradient(0, a) == doctest::Approx(static_cast<double>(expected[static_cast<std::size_t>(a)]) /
@@ -106,8 +105,8 @@ void compare_with_fit(double disorder) {
     std::vector<double> one(body.size(), 1.0);
     one[i] = 0.0;
     double gain = 0;
-    const double* w = weights.forward(i);
-    for (std::uint32_t m = 0; m < neighbours.rows.counts[i]; ++m) gain += w[m * (D + 1) + D];
+    const Stencil stencil = weights.stencil(i);
+    for (std::uint32_t m = 0; m < stencil.n; ++m) gain += stencil.forward[m * (D + 1) + D];
     CHECK(residual[0] == doctest::Approx(-gain * static_cast<double>(value[0])).epsilon(1e-9));
     CHECK(gain > 0.0);
     CHECK(gain < 1.0);
@@ -134,8 +133,7 @@ std::array<double, 2> errors(const ReferenceSettings& settings, double disorder,
   }
   double gradient_error = 0, residual_error = 0;
   for (std::size_t i = 0; i < body.size(); ++i) {
-    const auto [gradient, residual] =
-        deformation<D>(row_of(neighbours.list, i), weights.forward(i), x.data(), i);
+    const auto [gradient, residual] = deformation<D>(weights.stencil(i), x.data(), i);
     const Mat<D> difference = gradient - exact(at(i));
     gradient_error = std::max(gradient_error, std::sqrt(double_dot(difference, difference)));
     residual_error = std::max(residual_error, norm(residual) / dx);
@@ -216,7 +214,7 @@ TEST_CASE("a uniform stress exerts no force inside, and the area vectors close t
       std::size_t n = 0;
       for (std::size_t i = 0; i < body.size(); ++i) {
         double r[D];
-        weights.residual(i, neighbours.rows.counts[i], r);
+        weights.residual(i, r);
         for (int a = 0; a < D; ++a) {
           sum[a] += r[a] * dx;
           first_moment[a] -= volume * r[a] * body["reference_position"][i * D + static_cast<std::size_t>(a)];
@@ -246,6 +244,59 @@ TEST_CASE("a uniform stress exerts no force inside, and the area vectors close t
   check.operator()<3>(0.2, 0.02);
 }
 
+// The weights of each particle's own fit, without sharing, are what `fit` above is compared with; here the sums of
+// particles that share a stencil and are looked at together are compared with those of one at a time.
+template <int D>
+void compare_runs(double disorder) {
+  testing::Body body = solid_test::box(D, D == 2 ? 24 : 14, disorder);
+  const solid_test::Neighbours neighbours(body);
+  const ReferenceWeights weights = weights_of(body, neighbours, solid_test::settings());
+  const std::size_t n = body.size();
+  std::vector<double> x(n * D), F(n * D * D), q(n * D), P(n * D * D), f(n * D), free(n * D);
+  for (std::size_t k = 0; k < x.size(); ++k)
+    x[k] = body["reference_position"][k] + 0.1 * dx * std::sin(0.37 * static_cast<double>(k));
+  for (std::size_t k = 0; k < P.size(); ++k) P[k] = std::sin(0.7 * static_cast<double>(k * k % 1013));
+  x.resize(x.size() + 4), P.resize(P.size() + 4), q.resize(q.size() + 4);
+  std::size_t longest = 0;
+  for (std::size_t begin = 0; begin < n; begin += 100)  // pieces, as the kernel hands them out
+    weights.for_each_run(begin, std::min(n, begin + 100),
+                         [&](std::uint64_t a, std::uint64_t b, const Stencil& stencil) {
+                           deform_run<D>(stencil, a, b, x.data(), 3.0, F.data(), q.data());
+                           longest = std::max<std::size_t>(longest, b - a);
+                         });
+  weights.for_each_run(0, n, [&](std::uint64_t a, std::uint64_t b, const Stencil& stencil) {
+    force_run<D, true>(stencil, a, b, P.data(), q.data(), 2.0, f.data());
+    force_run<D, false>(stencil, a, b, P.data(), q.data(), 2.0, free.data());
+  });
+  if (disorder == 0.0) {
+    CHECK(longest > 8);
+    CHECK(weights.n_patterns() < (D == 2 ? 100 : 1000));
+  } else {
+    CHECK(weights.n_patterns() == n);
+  }
+  double wrong = 0;
+  const auto compare = [&](double a, double b, double scale) {
+    wrong = std::max(wrong, std::fabs(a - b) / scale);
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto one = deformation<D>(weights.stencil(i), x.data(), i);
+    for (std::size_t k = 0; k < D * D; ++k) compare(F[i * D * D + k], one.gradient.e[k], 1.0);
+    for (std::size_t k = 0; k < D; ++k) compare(q[i * D + k], 3.0 * one.residual.e[k], dx);
+    const Vec<D> with = force<D, true>(weights.stencil(i), P.data(), q.data(), i);
+    const Vec<D> without = force<D, false>(weights.stencil(i), P.data(), q.data(), i);
+    for (std::size_t k = 0; k < D; ++k) compare(f[i * D + k], 2.0 * with.e[k], 1.0 / dx);
+    for (std::size_t k = 0; k < D; ++k) compare(free[i * D + k], 2.0 * without.e[k], 1.0 / dx);
+  }
+  CHECK(wrong < 1e-12);
+}
+
+TEST_CASE("particles that share a stencil get what each would get alone") {
+  compare_runs<2>(0.0);
+  compare_runs<2>(0.2);
+  compare_runs<3>(0.0);
+  compare_runs<3>(0.2);
+}
+
 // The linear force has its own tests: it is that of the operators.
 template <int D>
 void compare_tangent() {
@@ -263,10 +314,10 @@ void compare_tangent() {
   weights.random_start(u);
   u.data()[3 * D] = 0.0;
   LinearSpace space;
-  weights.linear_force(neighbours.list, stiffness, u.data(), out.data(), space);
+  weights.linear_force(stiffness, u.data(), out.data(), space);
   double largest = 0;
   for (const auto& entry :
-       tangent(D, {weights, neighbours.list, stiffness, dx, body["volume"].data(), F.data(), held.data()})) {
+       tangent(D, {weights, body.size(), stiffness, dx, body["volume"].data(), F.data(), held.data()})) {
     const auto row = static_cast<std::size_t>(entry.row()), column = static_cast<std::size_t>(entry.col());
     CHECK(row >= column);
     expected[row] += entry.value() * u.data()[column];
@@ -291,7 +342,7 @@ TEST_CASE("the largest frequency is that of the explicit step's limit") {
   const solid_test::Neighbours neighbours(body);
   const ReferenceWeights weights = weights_of(body, neighbours, solid_test::settings());
   const Stiffness stiffness{1e6, 4e5, 2e5, 1000.0};
-  const double limit = 2.0 / weights.largest_frequency(neighbours.list, stiffness);
+  const double limit = 2.0 / weights.largest_frequency(stiffness);
   // Verlet, from a small random displacement.
   const auto growth = [&](double dt) {
     const std::size_t n = body.size();
@@ -300,8 +351,7 @@ TEST_CASE("the largest frequency is that of the explicit step's limit") {
     double largest = 0;
     for (int step = 0; step < 2000; ++step) {
       for (std::size_t i = 0; i < n; ++i) {
-        const auto [gradient, residual] =
-            deformation<2>(row_of(neighbours.list, i), weights.forward(i), u.data(), i);
+        const auto [gradient, residual] = deformation<2>(weights.stencil(i), u.data(), i);
         const Mat<2> strain = symmetric_part(gradient);
         const Mat<2> s = stiffness.lambda * trace(strain) * identity<2>() + 2.0 * stiffness.mu * strain;
         std::copy_n(s.e, 4, P.data() + 4 * i);
@@ -309,8 +359,7 @@ TEST_CASE("the largest frequency is that of the explicit step's limit") {
           q[2 * i + static_cast<std::size_t>(a)] = stiffness.hourglass / (dx * dx) * residual[a];
       }
       for (std::size_t i = 0; i < n; ++i) {
-        const Vec<2> f = force<2, true>(row_of(neighbours.list, i), weights.backward(i), weights.sums(i),
-                                        P.data(), q.data(), i);
+        const Vec<2> f = force<2, true>(weights.stencil(i), P.data(), q.data(), i);
         for (int a = 0; a < 2; ++a) v[2 * i + static_cast<std::size_t>(a)] += dt / stiffness.density * f[a];
       }
       largest = 0;
