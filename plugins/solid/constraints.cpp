@@ -82,7 +82,9 @@ void Clamp::build(const Builder& b) {
 void PrescribedMotionPhysics::build(const Builder& b) {
   declare_loop(b);
   if (displacement.is_set() == velocity.is_set())
-    throw CaseError("solid.prescribed_motion needs either a displacement or a velocity");
+    throw CaseError(
+        "solid.prescribed_motion needs either a displacement or a velocity, e.g. displacement: [\"0.1*t\", "
+        "0]");
   for (const BodyIndex body : bodies.value()) {
     const auto setup = [&](PrescribedMotion& op) {
       op.region.region = region_of(where, within, b.dimensions());

@@ -52,7 +52,8 @@ struct PrescribedMotion : ParticleOperator<PrescribedMotion> {
   std::array<std::vector<double>, 3> value_, rate_;  // displacement, velocity
 };
 
-// The force that a constraint exerts on its particles against stress and loads, -m a; their inertia is not in it. Several
+// The force that a constraint exerts on its particles against stress and loads, -m (a_internal + a), where a is what
+// loads, damping and contact add; the inertia of particles that are moved, m dv/dt, is not in it. Several
 // constraints of a body add to the same field, so each writes its own particles alone.
 struct ReactionForce : ParticleOperator<ReactionForce> {
   In<Vector> reference_position{"reference_position"};

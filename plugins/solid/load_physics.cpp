@@ -12,7 +12,8 @@ namespace shoal::solid {
 void Traction::build(const Builder& b) {
   declare_loop(b);
   if (traction.is_set() == force.is_set())
-    throw CaseError("solid.traction needs either a traction or a force");
+    throw CaseError(
+        "solid.traction needs either a traction or a force, e.g. traction: [0, \"1e4*min(t, 1)\"]");
   for (const BodyIndex body : bodies.value())
     b.attach<TractionLoad>("solid.traction", at_forces, b.target(body), [&](auto& op) {
       op.loaded.region = region_of(where, within, b.dimensions());
@@ -35,6 +36,7 @@ void PointForce::build(const Builder& b) {
   for (const BodyIndex body : bodies.value())
     b.attach<PointForceLoad>("solid.point_force", at_forces, b.target(body), [&](auto& op) {
       op.point = at.value();
+      op.place = at.place();
       op.radius = radius * b.body(body).spacing;
       op.force = force.value();
     });

@@ -15,7 +15,8 @@ void TractionLoad::begin() {
     for (const std::uint64_t i : loaded.particles())
       for (std::size_t a = 0; a < d; ++a) normal_[a] += area.data()[i * d + a];
     face_ = std::hypot(normal_[0], normal_[1], normal_[2]);
-    if (!(face_ > 0.0)) throw CaseError("the region of the traction holds no surface");
+    if (!(face_ > 0.0))
+      throw CaseError(loaded.region.place + ": the region of the traction holds no surface");
     for (double& component : normal_) component /= face_;
   }
   for (std::size_t a = 0; a < d; ++a)
@@ -43,7 +44,7 @@ void PointForceLoad::begin() {
       share_[i] = q < 1.0 ? std::pow(1.0 - q, 4) * (1.0 + 4.0 * q) : 0.0;
       sum += share_[i];
     }
-    if (sum == 0.0) throw CaseError("no particle lies around the point of the force");
+    if (sum == 0.0) throw CaseError(place + ": no particle lies around the point of the force");
     for (double& share : share_) share /= sum;
   }
   std::array<double, 3> at = point;

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "region.hpp"
@@ -102,6 +103,7 @@ struct PointForceLoad : ParticleOperator<PointForceLoad> {
 
   Vector3 point{};
   double radius = 0;  // m
+  std::string place;  // in the case, for messages
   VectorExpression force;
 
   void begin();

@@ -117,8 +117,7 @@ ReferenceRows::ReferenceRows(int dimensions, const ReferenceSettings& settings, 
     const Row row = row_of(list, i);
     if (std::any_of(row.j, row.j + row.n, [&](std::uint32_t j) { return j >= list.n_rows; }))
       throw CaseError(
-          "a solid body reaches a periodic or mirror face of the domain, which solid.total_lagrangian does "
-          "not know; "
+          "a solid body reaches a periodic or mirror face of the domain, which solids do not know; "
           "leave room, or hold the particles of a plane of symmetry with solid.clamp and its axes");
   }
   forward_.assign(start_.back() * stride_, 0.0);

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "shoal/parameters.hpp"
@@ -16,6 +17,7 @@ class Region {
  public:
   Expression where;             // without it: everything
   std::shared_ptr<void> shape;  // made by `api`
+  std::string place;            // in the case, for messages
   const shoal_shape_api* api = nullptr;
 
   // Finds out whether each particle belongs to it.
@@ -55,7 +57,10 @@ class RegionValues {
       particles_.push_back(i);
       positions_.insert(positions_.end(), reference_position + d * i, reference_position + d * (i + 1));
     }
-    if (particles_.empty()) throw CaseError("no particle lies in the region");
+    if (particles_.empty())
+      throw CaseError(
+          region.place +
+          ": no particle of the body lies in the region, which is of positions before deformation");
     values_.resize(particles_.size());
   }
   bool looked() const { return region.looked(); }
@@ -75,6 +80,7 @@ class RegionValues {
 
 inline Region region_of(const Param<Expression>& where, const Param<ObjectHandle>& within, int dimensions) {
   Region region;
+  region.place = where.is_set() ? where.place() : within.place();
   if (where.is_set()) region.where = where.value();
   if (within.is_set()) {
     const shoal_object* object = within->object;

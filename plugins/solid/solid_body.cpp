@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_body.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "deformation.hpp"
@@ -30,7 +32,9 @@ SharedStructure structure_of(const SolidPhysics& physics, const Builder& b, Body
   const double dx = b.body(body).spacing;
   structure->settings = {physics.gradient.value() == "quadratic", 0.5 * physics.support * dx, dx,
                          physics.regularisation, physics.consistent};
-  structure->hourglass = physics.hourglass * structure->constants.shear_modulus;
+  // Pressure presses layers out of line against the shear modulus alone, so what resists grows with the bulk modulus.
+  const double mu = structure->constants.shear_modulus, K = structure->constants.bulk_modulus;
+  structure->hourglass = physics.hourglass * mu * std::clamp(std::sqrt(K / (5.0 * mu)), 1.0, 10.0);
   return structure;
 }
 
@@ -42,6 +46,8 @@ SolidBody::SolidBody(const Builder& builder, const SolidPhysics& physics_, BodyI
 void SolidBody::attach_initial() const {
   b.attach<InitialState>("solid.initial_state", {SHOAL_INITIAL, "state"}, itself(),
                          [&](auto& op) { declare_law_fields(op, true); });
+  b.attach<InitialWeights>("solid.reference_weights", {SHOAL_INITIAL, "state"}, reference(),
+                           [&](auto& op) { op.structure = structure; });
   b.attach<SurfaceArea>(
       "solid.surface_area", {SHOAL_INITIAL, "state"}, reference(),
       [&](auto& op) { op.structure = structure; }, SHOAL_OPERATOR_ON_DEMAND);

@@ -66,4 +66,11 @@ class WeightBuilder : public ReferenceOperator {
   In<Scalar> distance{"signed_distance", own_only};
 };
 
+// Makes the weights before anything asks for a step, so that what is wrong with the body is said in time.
+struct InitialWeights : WeightBuilder {
+  void begin() { build_weights(); }
+  template <int D>
+  void run_chunk(const shoal_chunk&) const {}
+};
+
 }  // namespace shoal::solid
