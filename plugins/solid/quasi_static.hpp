@@ -4,7 +4,7 @@
 // solid.quasi_static: solids at rest under their loads, by damped relaxation (relaxation.hpp). The discretisation is
 // that of solid.total_lagrangian, with its loop; inertia and the time step are made up. Time t only says how far loads
 // and prescribed motions that are expressions of it have come: one iteration is 1/`iterations` of the run, which ends
-// by itself as soon as the body rests.
+// by itself as soon as the body rests. Constraints must keep it from moving as a whole, also where loads are in balance.
 //
 //   loop structure   half_motion, deformation, stress, forces   as in total_lagrangian.hpp
 //                    kick          out-of-balance force, one step of the relaxation

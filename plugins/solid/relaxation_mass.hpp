@@ -9,7 +9,8 @@
 //              twice that in 2D for pairs nearer than 1.2 dx; on a square lattice a solid with C11 = 3 mu,
 //              C12 = C44 = mu. It has a tenth of the entries, but the body is softer at its surface than bonds are
 //   lumped     row sums of the magnitudes of the bonds' matrix: a mass for each particle
-// A body that nothing holds is held by 1e-9 mu dx^(D-2) per particle.
+// 1e-9 mu dx^(D-2) per particle keeps it definite, but does not hold a body that may move as a whole: planes of symmetry
+// or a few clamped particles must.
 #pragma once
 
 #include <Eigen/SparseCholesky>

@@ -10,10 +10,10 @@ using namespace app_test;
 namespace {
 
 struct Block {
-  std::string physics;
+  std::string physics = "";
   std::string scheme = "solid.total_lagrangian: {bodies: [block]}";
   std::string material = "{solid.neo_hookean: {density: 1000, youngs_modulus: 1e6, poisson_ratio: 0.3}}";
-  std::string domain;
+  std::string domain = "";
   bool in_space = false;
 };
 

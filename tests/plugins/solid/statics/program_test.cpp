@@ -3,6 +3,7 @@
 //
 // The program with solids at rest: the run ends by itself at the state that damped motion comes to, with its probes
 // sampled there; the same bits on any number of threads and after a restart; and what a user reads.
+#include <array>
 #include <cmath>
 
 #include "tests/app/support.hpp"
@@ -139,4 +140,66 @@ TEST_CASE("a case in motion has nothing of the relaxation in its plan") {
   CHECK_FALSE(contains(still, "solid.drift"));
   CHECK(contains(moving, "solid.held_axes on beam"));  // among what is not computed
   CHECK_FALSE(contains(moving, "relaxation"));
+}
+
+TEST_CASE(
+    "a pressure that follows the surface: the stress of a compressed block is that pressure, in all "
+    "directions") {
+  write("pressed.yaml",
+        "shoal: 1\n"
+        "plugins: [solid]\n"
+        "dimensions: 3\n"
+        "resolution: 1/7\n"
+        "bodies:\n"
+        "  block:\n"
+        "    shape: {box: {lower: [0, 0, 0], upper: [1, 1, 1]}}\n"
+        "    material: {solid.neo_hookean: {density: 1000, youngs_modulus: 1e6, poisson_ratio: 0.25}}\n"
+        "physics:\n"
+        "  - solid.quasi_static: {bodies: [block]}\n"
+        // The planes of symmetry keep it from turning away.
+        "  - solid.clamp: {bodies: [block], where: abs(x - 0.5) < 0.01, axes: [x]}\n"
+        "  - solid.clamp: {bodies: [block], where: abs(y - 0.5) < 0.01, axes: [y]}\n"
+        "  - solid.clamp: {bodies: [block], where: abs(z - 0.5) < 0.01, axes: [z]}\n"
+        "  - solid.pressure: {bodies: [block], pressure: 4e5}\n"
+        "run: {end: 1 s}\n"
+        "probes:\n"
+        "  most: {maximum: {of: [principal_stress.x, principal_stress.z, von_mises, pressure], body: block}, "
+        "every: 1 s}\n"
+        "  least: {minimum: {of: [principal_stress.x, principal_stress.z, von_mises, pressure], body: "
+        "block}, every: 1 s}\n"
+        "  size: {mean: {of: current_deformation_gradient.determinant, body: block}, every: 1 s}\n");
+  const Result result = app_test::shoal({"run", "pressed.yaml", "-o", "pressed", "--force"});
+  REQUIRE_MESSAGE(result.code == 0, result.err);
+  const auto most = rows("pressed/probes/most.csv").back(), least = rows("pressed/probes/least.csv").back();
+  for (const std::size_t k : {1u, 2u}) {
+    CHECK(most[k] == doctest::Approx(-4e5).epsilon(1e-4));
+    CHECK(least[k] == doctest::Approx(-4e5).epsilon(1e-4));
+  }
+  CHECK(most[3] < 40.0);
+  CHECK(most[4] == doctest::Approx(4e5).epsilon(1e-4));
+  // -p = K/2 (J - 1/J), K = E / (3 (1 - 2 nu)): far from linear.
+  const double p_over_K = 4e5 / (1e6 / 1.5);
+  CHECK(rows("pressed/probes/size.csv").back()[1] ==
+        doctest::Approx(std::sqrt(p_over_K * p_over_K + 1.0) - p_over_K).epsilon(1e-4));
+}
+
+TEST_CASE("a point force and a torque reach the clamp") {
+  const auto reactions = [](const std::string& load) {
+    std::string wanted = text({});
+    const std::size_t begin = wanted.find("  - solid.traction"), end = wanted.find('\n', begin);
+    wanted.replace(begin, end - begin, "  - " + load);
+    wanted +=
+        "  moment: {sum: {of: \"reaction_force.y*x - reaction_force.x*(y - 0.1)\", body: beam}, every: 1 "
+        "s}\n";
+    write("loaded.yaml", wanted);
+    const Result result = app_test::shoal({"run", "loaded.yaml", "-o", "loaded", "--force"});
+    REQUIRE_MESSAGE(result.code == 0, result.err);
+    return std::array{rows("loaded/probes/hold.csv").back()[1], rows("loaded/probes/moment.csv").back()[1]};
+  };
+  const auto pushed = reactions("solid.point_force: {bodies: [beam], at: [0.9, 0.1], force: [0, 10]}");
+  CHECK(pushed[0] == doctest::Approx(-10.0).epsilon(1e-4));
+  CHECK(pushed[1] == doctest::Approx(-9.0).epsilon(0.01));  // its arm shortens a little
+  const auto twisted = reactions("solid.torque: {bodies: [beam], where: x > 0.8, torque: 5}");
+  CHECK(std::fabs(twisted[0]) < 1e-3);
+  CHECK(twisted[1] == doctest::Approx(-5.0).epsilon(1e-3));
 }
