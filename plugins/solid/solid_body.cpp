@@ -34,7 +34,7 @@ SharedStructure structure_of(const SolidPhysics& physics, const Builder& b, Body
                          physics.regularisation, physics.consistent};
   // Pressure presses layers out of line against the shear modulus alone, so what resists grows with the bulk modulus.
   const double mu = structure->constants.shear_modulus, K = structure->constants.bulk_modulus;
-  structure->hourglass = physics.hourglass * mu * std::clamp(std::sqrt(K / (5.0 * mu)), 1.0, 10.0);
+  structure->hourglass = physics.hourglass * mu * std::clamp(std::sqrt(K / (10.0 * mu)), 1.0, 10.0);
   return structure;
 }
 

@@ -39,7 +39,7 @@ struct SolidPhysics : Physics {
   Param<double> hourglass{
       "hourglass", "1",
       "Strength of the control of modes that alternate between particles, over the shear modulus; where the "
-      "bulk modulus K is more than five times that, times sqrt(K / (5 mu)), at most 10. 0: none.",
+      "bulk modulus K is more than ten times that, times sqrt(K / (10 mu)), at most 10. 0: none.",
       non_negative, default_to(5.0)};
   Param<Choice> average_volume{"average_volume", nullptr,
                                "Whether the volumetric part of the energy takes the mean volume ratio of a "
