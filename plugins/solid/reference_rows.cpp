@@ -53,7 +53,8 @@ class RowFit {
 
   RowFit(const ReferenceSettings& settings) : settings_(settings), h_(settings.smoothing_length) {}
 
-  void operator()(const Surroundings<D>& around, double* out) {
+  // Writes the weights of a particle's neighbours; false if these do not span the space, and the weights are zero.
+  bool operator()(const Surroundings<D>& around, double* out) {
     moments_.setZero();
     first_.setZero();
     linear_.setZero();
@@ -78,6 +79,7 @@ class RowFit {
       for (int a = 0; a < D; ++a) *out++ = g[a];
       *out++ = fits ? w * (1.0 - residual_row_.dot(p)) / s : 0.0;
     }
+    return fits || linear_fits;
   }
 
  private:
@@ -132,10 +134,16 @@ void ReferenceRows::fit(const ReferenceSettings& settings, const shoal_neighbour
   const WendlandC2<D> kernel(settings.smoothing_length);
   Surroundings<D> around;
   RowFit<D> fitted(settings);
+  bool spans = false;
   for (std::uint64_t i = 0; i < size(); ++i) {
     around.look(kernel, row_of(list, i), geometry.position, geometry.volume, i);
-    fitted(around, forward_.data() + start_[i] * stride_);
+    spans = fitted(around, forward_.data() + start_[i] * stride_) || spans;
   }
+  if (!spans && size() > 0)
+    throw CaseError(
+        "the particles of a solid body lie in one row or layer, which says nothing of how it deforms across; "
+        "make "
+        "it at least two particles thick, with a smaller resolution or a thicker shape");
   if (settings.consistent)
     consistency_ = make_consistent<D>(settings, list, geometry, start_, forward_.data());
 }

@@ -56,11 +56,16 @@ double integrate_ball(const Kernel& kernel, F&& f) {
 
 template <int D, class F>
 void for_all_kernels(double h, F&& f) {
-  for (std::size_t k = 0; k < shoal::smoothing_kernel_names.size(); ++k)
-    shoal::with_kernel<D>(static_cast<SmoothingKernel>(k), h, [&](auto kernel) {
-      INFO(shoal::smoothing_kernel_names[k] << " in " << D << "D, h = " << h);
-      f(kernel, static_cast<SmoothingKernel>(k));
-    });
+  const auto check = [&](auto kernel, SmoothingKernel kind) {
+    INFO(shoal::to_string(kind) << " in " << D << "D, h = " << h);
+    f(kernel, kind);
+  };
+  check(shoal::WendlandC2<D>(h), SmoothingKernel::wendland_c2);
+  check(shoal::WendlandC4<D>(h), SmoothingKernel::wendland_c4);
+  check(shoal::CubicSpline<D>(h), SmoothingKernel::cubic_spline);
+  check(shoal::QuinticSpline<D>(h), SmoothingKernel::quintic_spline);
+  check(shoal::Hyperbolic<D>(h), SmoothingKernel::hyperbolic);
+  check(shoal::LaguerreGauss<D>(h), SmoothingKernel::laguerre_gauss);
 }
 template <class F>
 void for_all_dimensions(F&& f) {
@@ -210,4 +215,21 @@ TEST_CASE("kernels are chosen by name") {
   }
   CHECK(values.size() == shoal::smoothing_kernel_names.size());
   CHECK_FALSE(shoal::smoothing_kernel_from_name("gaussian").has_value());
+}
+
+TEST_CASE("with_kernel gives the kernel of the name") {
+  for_all_dimensions([](auto kernel, SmoothingKernel kind, auto dimensions) {
+    shoal::with_kernel<dimensions()>(kind, kernel.h(), [&](const auto& chosen) {
+      CHECK(chosen.h() == kernel.h());
+      CHECK(chosen.cutoff() == kernel.cutoff());
+      for (double q = 0.0; q < 3.2; q += 0.1) {
+        const double r = q * kernel.h();
+        CHECK(chosen.w(r) == kernel.w(r));
+        CHECK(chosen.dw(r) == kernel.dw(r));
+        CHECK(chosen.dw_over_r(r) == kernel.dw_over_r(r));
+        const shoal::Pack same = chosen.w(shoal::Pack(r));
+        CHECK(same[0] == doctest::Approx(kernel.w(r)).epsilon(1e-14));
+      }
+    });
+  });
 }

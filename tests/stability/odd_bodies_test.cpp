@@ -43,6 +43,16 @@ TEST_CASE("a drop of one particle falls freely and stays in its tank") {
   }
 }
 
+TEST_CASE("a plate one particle thick is refused, one of two bends") {
+  const Result thin = run(replaced(plate, "upper: [S, 0.12*S]", "upper: [S, dx]"), "foil");
+  CHECK(thin.code == 2);
+  CHECK(contains(thin.err, "at least two particles thick"));
+  const Result two = run(replaced(plate, "upper: [S, 0.12*S]", "upper: [S, 2*dx]"), "foil",
+                         {"--set", "bodies.plate.initial.velocity=[0, S*(x/S)^2]"});
+  CHECK_MESSAGE(two.code == 0, two.err);
+  check_energy("foil", 1.01);
+}
+
 TEST_CASE("a rod one particle thick conducts heat") {
   const std::string rod = replaced(heat, "upper: [S, S]", "upper: [S, dx]");
   const Result result = run(rod, "rod");
