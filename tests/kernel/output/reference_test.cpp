@@ -190,10 +190,12 @@ TEST_CASE("due times: multiples, single times, rounding") {
 }
 
 TEST_CASE("the state of a run survives its text") {
-  const RunState state{"0.1.0", "shoal: 1\n", 0.1, 12.5, {{{"vtk", 7}}, {{"front", 1234567890123}}}};
+  const RunState state{"0.1.0", "shoal: 1\n",    0.1,
+                       12.5,    "it is at rest", {{{"vtk", 7}}, {{"front", 1234567890123}}}};
   const RunState copy = state_from_text(to_text(state));
   CHECK(copy.version == state.version);
   CHECK(copy.effective_case == state.effective_case);
+  CHECK(copy.finish_reason == state.finish_reason);
   CHECK(copy.time == state.time);
   CHECK(copy.recorder.outputs[0].name == "vtk");
   CHECK(copy.recorder.outputs[0].sequence == 7);
