@@ -70,9 +70,15 @@ shoal_status protect(std::string& thrown, const Call& call) {
   return SHOAL_ERROR;
 }
 
-// function(chunk) for chunks of 256 particles, on all threads where that pays.
+// Whether all threads run it. This depends on the clock, its results do not.
+bool pays_on_threads(const OperatorRun& op, std::uint64_t n) {
+  return n >= serial_below || (op.calls > 0 && op.ticks / op.calls >= worth_threads);
+}
+
+// function(chunk) for chunks of 256 particles.
 template <class Function>
-void for_each_chunk(std::uint64_t n, double* partials, std::size_t stride, const Function& function) {
+void for_each_chunk(std::uint64_t n, bool on_threads, double* partials, std::size_t stride,
+                    const Function& function) {
   const auto one = [&](std::uint64_t number) {
     shoal_chunk chunk;
     chunk.size = sizeof chunk;
@@ -83,7 +89,7 @@ void for_each_chunk(std::uint64_t n, double* partials, std::size_t stride, const
     function(chunk);
   };
   const std::uint64_t chunks = n_chunks(n);
-  if (n < serial_below) {
+  if (!on_threads) {
     for (std::uint64_t k = 0; k < chunks; ++k) one(k);
     return;
   }
@@ -284,7 +290,7 @@ void Executor::run_chunks(OperatorRun& op, const shoal_step& step) {
     chunk.partial = op.partials.data();
     run_one(chunk);
   } else {
-    for_each_chunk(n, op.partials.data(), n_reductions, run_one);
+    for_each_chunk(n, pays_on_threads(op, n), op.partials.data(), n_reductions, run_one);
   }
   if (failure.happened()) fail(op, "run", failure.status(), failure.text(), &step);
   reduce(op, chunks);
@@ -327,7 +333,7 @@ double Executor::time_step(OperatorRun& op, const shoal_step& step) {
     const std::uint64_t n = op.body->n_owned();
     const std::size_t stride = std::max<std::size_t>(op.attachment.reductions.size(), 1);
     double* partials = op.partials.data();
-    for_each_chunk(n, partials, stride, [&](const shoal_chunk& chunk) {
+    for_each_chunk(n, n >= serial_below, partials, stride, [&](const shoal_chunk& chunk) {
       const double limit_here = op.c().time_step(op.c().self, &step, &chunk);
       chunk.partial[0] = limit_here;
     });
