@@ -45,7 +45,8 @@ class Body {
   }
   double* data(const std::string& field, std::size_t components) {
     auto& values = fields_[field];
-    // Rows are read up to a whole pack.
+    // Packs are read whole, and vectors with a number of the next one: fields of a run are padded in the same way.
+    values.reserve((n_ + SHOAL_PADDING) * components);
     values.resize(std::max(values.size(), n_ * components));
     return values.data();
   }
