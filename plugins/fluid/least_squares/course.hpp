@@ -11,10 +11,10 @@
 
 namespace shoal::fluid::least_squares {
 
-// Largest |e| of the eigenvalues -e / dx^2 of the fitted Laplacian and what else follows from the lattice.
 struct Course {
   double dt = 0;               // s, of the advection step
   double sound_speed = 0;      // m/s, in this step
+  double laplacian_norm = 0;   // 1/m2, of the stiffest particle (fit.hpp)
   int viscous_stages = 1;      // of the super-time-stepping
   int viscous_stage = 0;       // 1 ... viscous_stages while they run
   bool first_acoustic = true;  // the first of the acoustic sub-steps kicks by half a step

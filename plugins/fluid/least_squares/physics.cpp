@@ -55,6 +55,7 @@ struct FluidBody {
   // Nothing drives the flow, so that steps may grow as it slows down. A driven one starts from rest in small steps.
   bool decaying() const { return walls.empty() && b.gravity() == Vector3{}; }
 
+  double h_over_dx() const { return alone().smoothing_length / alone().spacing; }
   Target alone() const { return fitted(b.target(body)); }
   // With all particles that the fits look at.
   Target target() const {
@@ -97,18 +98,19 @@ struct FluidBody {
   }
 
   void attach_motion() const {
-    const double h_over_dx = target().smoothing_length / target().spacing;
     b.attach<Departure>("fluid.departure", at_drift, alone(), [&](auto& op) {
       op.course = course;
       op.least_speed = decaying() ? 0.1 * physics.max_speed : physics.max_speed;
       op.mach = physics.mach;
       op.viscosity = viscosity;
-      op.stiffness = laplacian_stiffness(b.dimensions(), h_over_dx);
+      op.stiffness = laplacian_stiffness(b.dimensions(), h_over_dx());
       op.cfl = physics.advection_cfl;
       op.viscous_number = physics.viscous_number;
     });
-    b.attach<Fit>("fluid.fit", at_fit, target(),
-                  [&](auto& op) { op.shift_strength = physics.shift_strength; });
+    b.attach<Fit>("fluid.fit", at_fit, target(), [&](auto& op) {
+      op.shift_strength = physics.shift_strength;
+      op.course = course;
+    });
     if (!walls.empty()) b.attach<Clearance>("fluid.clearance", at_fit, walls_alone());
     attach_at_walls<WallSurface>("fluid.wall_surface", at_fit);
     attach_at_walls<WallFit>("fluid.wall_fit", at_fit);
@@ -154,6 +156,7 @@ struct FluidBody {
       op.course = course;
       op.cfl = physics.acoustic_cfl;
       op.damping = physics.damping;
+      op.eigenvalue_over_norm = eigenvalue_over_norm(b.dimensions(), h_over_dx());
     });
     attach_at_walls<WallPressure<PressureImpulse>>("fluid.wall_pressure_impulse", at_arrival);
     b.attach<least_squares::PressureForce>("fluid.pressure_force", at_arrival, target(),

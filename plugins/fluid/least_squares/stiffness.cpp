@@ -18,6 +18,7 @@ template <int D>
 struct LatticeLaplacian {
   std::vector<Vec<D>> x;  // of neighbours, in dx
   std::vector<double> l;  // times dx^2
+  double norm_bound = 0;  // on sum |l|
 
   explicit LatticeLaplacian(double h) {
     const Weight<D> kernel(h);
@@ -39,6 +40,9 @@ struct LatticeLaplacian {
         }
     typename impl::Element<FitLaplacian, D>::type row;
     fit::keep<FitLaplacian, D>(fit::derivatives<D>(m, h, 0.0), row);
+    double weights = 0;
+    for (const Vec<D>& d : x) weights += kernel.w(norm(d));
+    norm_bound = least_squares::laplacian_norm<D>(weights, row, h);
     for (const Vec<D>& d : x) {
       const auto q = fit_monomials((1.0 / h) * d);
       double weight = 0;
@@ -74,6 +78,11 @@ double largest_eigenvalue(double h) {
 
 double laplacian_stiffness(int dimensions, double h_over_dx) {
   return margin * (dimensions == 2 ? largest_eigenvalue<2>(h_over_dx) : largest_eigenvalue<3>(h_over_dx));
+}
+
+double eigenvalue_over_norm(int dimensions, double h_over_dx) {
+  return dimensions == 2 ? largest_eigenvalue<2>(h_over_dx) / LatticeLaplacian<2>(h_over_dx).norm_bound
+                         : largest_eigenvalue<3>(h_over_dx) / LatticeLaplacian<3>(h_over_dx).norm_bound;
 }
 
 }  // namespace shoal::fluid::least_squares

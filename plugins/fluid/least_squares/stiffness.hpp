@@ -10,4 +10,7 @@ namespace shoal::fluid::least_squares {
 
 double laplacian_stiffness(int dimensions, double h_over_dx);
 
+// The largest eigenvalue over the bound on the row sums (fit.hpp), on a lattice.
+double eigenvalue_over_norm(int dimensions, double h_over_dx);
+
 }  // namespace shoal::fluid::least_squares
