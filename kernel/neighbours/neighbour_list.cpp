@@ -134,7 +134,7 @@ void NeighbourList::build_rows(const NeighbourGrid& sources, Positions targets, 
     return pairs;
   };
   if (indices_.capacity() == 0) reserve_first(fill_rows);
-  if (use_threads(n_rows_))
+  if (use_threads_for_rows(n_rows_))
     build_parallel(fill_rows);
   else
     build_serial(fill_rows);

@@ -109,7 +109,8 @@ void Neighbourhood::build_halos(bool everything) {
 
 void Neighbourhood::build_current_lists(bool everything) {
   for (const auto& other : bodies_) {
-    bool has_grid = false;
+    // The grid of a body that rests, a wall for instance, stands.
+    bool has_grid = !everything && !other->position_changed && grids_[other->index()].n() > 0;
     for (Relation& relation : relations_) {
       if (relation.configuration != SHOAL_CURRENT || relation.neighbours != other->index()) continue;
       const Body& own = *bodies_[relation.body];

@@ -17,6 +17,8 @@
 #include "shoal/particle_operator.hpp"
 #include "shoal/physics.hpp"
 
+#include "largest_speed.hpp"
+
 namespace shoal::fluid {
 
 using EquationOfState = Interface<shoal_equation_of_state>;
@@ -41,21 +43,24 @@ struct AcousticPredictor : ParticleOperator<AcousticPredictor> {
 
   void block(std::uint64_t begin, std::uint64_t end) const {
     const double half = 0.5 * dt();
-    const double *rate = compression.data(), *diffused = diffusion.data(), *m = mass.data(),
-                 *v = velocity.data();
-    double *rho = density.data(), *vol = volume.data(), *x = position.data();
+    const double *__restrict rate = compression.data(), *__restrict diffused = diffusion.data(),
+                 *__restrict m = mass.data(), *__restrict v = velocity.data();
+    double *__restrict rho = density.data(), *__restrict vol = volume.data(), *__restrict x = position.data(),
+                       *__restrict p = pressure.data();
     for (std::uint64_t i = begin; i < end; ++i) {
       rho[i] += half * (rate[i] + diffused[i]);
       vol[i] = m[i] / rho[i];
     }
     const auto d = static_cast<std::uint64_t>(dimensions());
     for (std::uint64_t k = begin * d; k < end * d; ++k) x[k] += half * v[k];
-    equation_of_state.api->pressure(equation_of_state.self, end - begin, rho + begin,
-                                    pressure.data() + begin);
+    equation_of_state.api->pressure(equation_of_state.self, end - begin, rho + begin, p + begin);
     const double zeta = damping * sound_speed * smoothing_length();
-    for (std::uint64_t i = begin; i < end; ++i) pressure.data()[i] += zeta * rate[i];
+    for (std::uint64_t i = begin; i < end; ++i) p[i] += zeta * rate[i];
   }
-  double time_step_of(auto i) const { return cfl * smoothing_length() / (sound_speed + norm(velocity[i])); }
+  template <int D>
+  double time_step_of_block(std::uint64_t begin, std::uint64_t end) const {
+    return cfl * smoothing_length() / (sound_speed + largest_speed<D>(velocity.data(), begin, end));
+  }
 };
 
 // A full step of velocity and half a step of position.
@@ -67,10 +72,17 @@ struct Kick : ParticleOperator<Kick> {
   Out<Vector> last_acceleration{"last_pressure_acceleration", unit("m/s2"),
                                 doc("Acceleration by pressure in the last acoustic step.")};
 
-  void particle(auto i) const {
-    last_acceleration[i] = pressure_acceleration[i];
-    velocity[i] += dt() * (acceleration[i] + pressure_acceleration[i]);
-    position[i] += 0.5 * dt() * velocity[i];
+  void block(std::uint64_t begin, std::uint64_t end) const {
+    const auto d = static_cast<std::uint64_t>(dimensions());
+    const double step = dt(), half = 0.5 * step;
+    const double* __restrict a = acceleration.data(), * __restrict by_pressure = pressure_acceleration.data();
+    double *__restrict v = velocity.data(), *__restrict x = position.data(),
+                       *__restrict last = last_acceleration.data();
+    for (std::uint64_t k = begin * d; k < end * d; ++k) {
+      last[k] = by_pressure[k];
+      v[k] += step * (a[k] + by_pressure[k]);
+      x[k] += half * v[k];
+    }
   }
 };
 

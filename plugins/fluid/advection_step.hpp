@@ -12,6 +12,8 @@
 #include "shoal/particle_operator.hpp"
 #include "shoal/physics.hpp"
 
+#include "largest_speed.hpp"
+
 namespace shoal::fluid {
 
 // The step of the advection loop, for whose length neighbour lists and forces other than pressure are kept:
@@ -23,8 +25,9 @@ struct AdvectionStep : ParticleOperator<AdvectionStep> {
   double expected_speed = 0;  // m/s
   double cfl = 0.25;
 
-  double time_step_of(auto i) const {
-    return cfl * smoothing_length() / std::max(norm(velocity[i]), expected_speed);
+  template <int D>
+  double time_step_of_block(std::uint64_t begin, std::uint64_t end) const {
+    return cfl * smoothing_length() / max(expected_speed, largest_speed<D>(velocity.data(), begin, end));
   }
 };
 

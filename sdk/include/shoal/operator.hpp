@@ -400,6 +400,10 @@ template <class Op, int D>
 concept HasParticleTimeStep = requires(const Op& op, Particle<D> i) {
   { op.time_step_of(i) } -> std::convertible_to<double>;
 };
+template <class Op, int D>
+concept HasBlockTimeStep = requires(const Op& op, std::uint64_t i) {
+  { op.template time_step_of_block<D>(i, i) } -> std::convertible_to<double>;
+};
 template <class Op>
 concept HasTimeStep = requires(const Op& op, double h) {
   { op.time_step(h) } -> std::convertible_to<double>;
@@ -414,7 +418,10 @@ template <class Op>
 double time_step_of_chunk(void* self, const shoal_step* step, const shoal_chunk* chunk) noexcept {
   const Op& op = op_of<Op>(self);
   double limit = std::numeric_limits<double>::infinity();
-  if constexpr (HasParticleTimeStep<Op, 2>) {
+  if constexpr (HasBlockTimeStep<Op, 2>) {
+    limit = step->dimensions == 2 ? op.template time_step_of_block<2>(chunk->begin, chunk->end)
+                                  : op.template time_step_of_block<3>(chunk->begin, chunk->end);
+  } else if constexpr (HasParticleTimeStep<Op, 2>) {
     const auto over_particles = [&]<int D>() {
       for (std::uint64_t i = chunk->begin; i < chunk->end; ++i) {
         const double particle_limit = op.time_step_of(Particle<D>{i, nullptr});
@@ -476,9 +483,10 @@ shoal_operator describe(std::unique_ptr<AttachedOperator<Op>> attached, std::uin
       if constexpr (requires(Op & op) { op.end(); }) op_of<Op>(self).end();
     });
   };
-  if constexpr (HasParticleTimeStep<Op, 2> || HasTimeStep<Op>) {
+  constexpr bool of_particles = HasParticleTimeStep<Op, 2> || HasBlockTimeStep<Op, 2>;
+  if constexpr (of_particles || HasTimeStep<Op>) {
     c.time_step = &time_step_of_chunk<Op>;
-    if constexpr (HasParticleTimeStep<Op, 2>) c.flags |= SHOAL_OPERATOR_TIME_STEP_OF_PARTICLES;
+    if constexpr (of_particles) c.flags |= SHOAL_OPERATOR_TIME_STEP_OF_PARTICLES;
   }
   if constexpr (HasState<Op>) {
     c.save = [](void* self, const shoal_stream* stream) {

@@ -34,6 +34,7 @@
 // result is kept beside the list: 8 bytes a pair for each number. It may read only what does not change until then.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <tuple>
@@ -184,6 +185,7 @@ class PairOperator : public OperatorBase {
 
   void bind(const shoal_binding& binding) {
     OperatorBase::bind(binding);
+    if constexpr (requires { Derived::skips_lonely; }) find_rows_with_neighbours();
     if (!keeps_pairs()) return;
     kept_.resize(n_relations());
     for (std::size_t k = 0; k < n_relations(); ++k)
@@ -267,13 +269,19 @@ class PairOperator : public OperatorBase {
   template <int D, class R, class Kernel>
   [[gnu::noinline, gnu::flatten]] void rows(const Kernel& kernel, const shoal_chunk& chunk) const {
     using Result = decltype(value_of(std::declval<const Pair<D, R, Kernel>&>(), 0, 0));
-    for (std::uint64_t index = chunk.begin; index < chunk.end; ++index) {
-      if constexpr (requires { Derived::skips_lonely; })
-        if (is_lonely(index)) continue;
+    const auto one = [&](std::uint64_t index) {
       const Particle<D> i{index, chunk.partial};
       Result sum{};
       for (std::size_t k = 0; k < n_relations(); ++k) add_row<R>(kernel, k, i, sum);
       pair_loop::finish_particle(self(), i, sum);
+    };
+    if constexpr (requires { Derived::skips_lonely; }) {
+      const auto end = rows_with_neighbours_.end();
+      for (auto row = std::lower_bound(rows_with_neighbours_.begin(), end, chunk.begin);
+           row != end && *row < chunk.end; ++row)
+        one(*row);
+    } else {
+      for (std::uint64_t index = chunk.begin; index < chunk.end; ++index) one(index);
     }
   }
 
@@ -300,15 +308,22 @@ class PairOperator : public OperatorBase {
     }
   }
 
-  bool is_lonely(std::uint64_t i) const {
-    for (std::size_t k = 0; k < n_relations(); ++k)
-      if (neighbours(k).counts[i] != 0) return false;
-    return true;
+  // Looked up once for each list: asking each row in each pass costs more than the pairs of the few that have some.
+  void find_rows_with_neighbours() {
+    rows_with_neighbours_.clear();
+    std::uint64_t n_rows = n_particles();  // fewer where particles have joined since the lists were built
+    for (std::size_t k = 0; k < n_relations(); ++k) n_rows = std::min(n_rows, neighbours(k).n_rows);
+    for (std::uint64_t i = 0; i < n_rows; ++i) {
+      std::uint32_t n = 0;
+      for (std::size_t k = 0; k < n_relations(); ++k) n |= neighbours(k).counts[i];
+      if (n != 0) rows_with_neighbours_.push_back(static_cast<std::uint32_t>(i));
+    }
   }
 
   const Derived& self() const { return static_cast<const Derived&>(*this); }
 
   In<Vector> position_{geometry()};
+  std::vector<std::uint32_t> rows_with_neighbours_;  // of operators that skip lonely particles
   mutable std::vector<pair_loop::KeptPairs>
       kept_;  // [relation]; rows are written by the thread that runs them
 };

@@ -10,7 +10,8 @@
 //     };
 //
 // Optional members: begin() and end() [main thread, before and after the particles], bound() [after the arrays have
-// moved], time_step(h) or time_step_of(i) [largest stable step of the loop], save(stream) and load(stream);
+// moved], time_step(h), time_step_of(i) or time_step_of_block<D>(begin, end) [largest stable step of the loop],
+// save(stream) and load(stream);
 // exchange(Exchange&) [before neighbours are renewed: particles leave and join], fill(begin, end) [what joined].
 // An operator that works on whole blocks defines block(begin, end) instead of particle(i).
 #pragma once

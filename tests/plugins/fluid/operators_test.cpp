@@ -180,7 +180,7 @@ TEST_CASE("the acoustic step is position-based Verlet") {
   CHECK(water["pressure"][0] == doctest::Approx(400.0 * 1.5 + 0.25 * 20.0 * h * 60.0).epsilon(1e-12));
   CHECK(water["volume"][0] == doctest::Approx(2.5 / 1001.5).epsilon(1e-14));
   CHECK(water["position"][0] == doctest::Approx(0.105).epsilon(1e-14));
-  CHECK(predict.time_step_of(Particle<2>{0, nullptr}) == doctest::Approx(0.6 * h / (20.0 + std::sqrt(5.0))));
+  CHECK(predict.time_step_of_block<2>(0, 1) == doctest::Approx(0.6 * h / (20.0 + std::sqrt(5.0))));
   Kick kick;
   testing::run(kick, water, {}, step);
   CHECK(water["velocity"][0] == doctest::Approx(1.05).epsilon(1e-14));
@@ -189,6 +189,21 @@ TEST_CASE("the acoustic step is position-based Verlet") {
   DensityCorrector correct;
   testing::run(correct, water, {}, step);
   CHECK(water["density"][0] == doctest::Approx(1002.0).epsilon(1e-14));
+}
+
+TEST_CASE("the largest speed of a block, wherever it is, and a NaN anywhere") {
+  std::vector<double> v(3 * 21);
+  for (std::size_t k = 0; k < v.size(); ++k) v[k] = std::sin(static_cast<double>(k));
+  for (std::uint64_t fastest = 2; fastest < 21; ++fastest) {
+    std::vector<double> with = v;
+    with[3 * fastest] = 3.0, with[3 * fastest + 1] = 4.0, with[3 * fastest + 2] = -12.0;
+    CHECK(largest_speed<3>(with.data(), 2, 21) == 13.0);
+    CHECK(largest_speed<3>(with.data(), 2, fastest) < 2.0);
+    CHECK(largest_speed<2>(with.data(), fastest * 3 / 2, fastest * 3 / 2 + 2) >= 5.0);
+    with[3 * fastest + 1] = std::nan("");
+    CHECK(std::isnan(largest_speed<3>(with.data(), 2, 21)));
+  }
+  CHECK(largest_speed<3>(v.data(), 4, 4) == 0.0);
 }
 
 TEST_CASE("equations of state and their inverses agree, with the sound speed as slope") {
