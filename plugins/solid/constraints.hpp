@@ -34,8 +34,13 @@ struct PrescribedMotion : ParticleOperator<PrescribedMotion> {
   bool half_step = false;
 
   void begin();
-  void particle(auto i) const {
-    if (!region.holds(i.index)) return;
+  template <int D>
+  void run_chunk(const shoal_chunk& chunk) const {
+    for (const std::uint64_t i : region.particles(chunk.begin, chunk.end)) move(Particle<D>{i, nullptr});
+  }
+
+ private:
+  void move(auto i) const {
     for (int a = 0; a < decltype(i)::dimensions; ++a) {
       const auto k = static_cast<std::size_t>(a);
       if (!axes[k]) continue;
@@ -48,7 +53,6 @@ struct PrescribedMotion : ParticleOperator<PrescribedMotion> {
     }
   }
 
- private:
   std::array<std::vector<double>, 3> value_, rate_;  // displacement, velocity
 };
 

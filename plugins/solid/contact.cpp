@@ -45,13 +45,17 @@ struct Touch {
   ContactScale scale() const {
     return contact_scale(b.dimensions(), target(), b.body(own).spacing, b.body(other).spacing);
   }
-  double modulus() const {
-    return physics.stiffness * std::min(wave_modulus(b, own), wave_modulus(b, other)) / scale().stiffness;
+  double modulus() const { return stiffest() / scale().stiffness; }
+  double pressure_per_overlap() const {  // Pa/m
+    return stiffest() / std::min(b.body(own).spacing, b.body(other).spacing);
   }
   void attach_overlap() const { itself() ? overlaps<FarPair>() : overlaps<AnyPair>(); }
   void attach_force() const { itself() ? forces<FarPair>() : forces<AnyPair>(); }
 
  private:
+  double stiffest() const {
+    return physics.stiffness * std::min(wave_modulus(b, own), wave_modulus(b, other));
+  }
   void set_pairs(AnyPair&) const {}
   void set_pairs(FarPair& pairs) const { pairs.distance = physics.self_distance * b.body(own).spacing; }
 
@@ -77,7 +81,11 @@ struct Touch {
       op.K = modulus();
       set_pairs(op.pairs_in_contact);
     };
-    b.attach<ContactForce<Pairs>>("solid.contact_force", at_forces, target(), setup);
+    b.attach<ContactForce<Pairs>>("solid.contact_force", at_forces, target(), [&](auto& op) {
+      setup(op);
+      op.added = added_stiffness(b, own);
+      *op.added += 2.0 * pressure_per_overlap() / b.body(own).spacing;
+    });
     if (physics.friction == 0.0) return;
     b.attach<ContactFriction<Pairs>>("solid.contact_friction", at_forces, target(), [&](auto& op) {
       setup(op);

@@ -13,12 +13,13 @@
 // the pair within about ten steps where it is strong enough:
 //   F_i -= min(mu f_n, 0.1 m_ij |v_t| / dt) v_t / |v_t|,   v_t = v_ij less its part along n,   m_ij = m_i m_j / (m_i + m_j)
 // K is such that surfaces that overlap by x dx press with `stiffness` M x, M the smaller wave modulus of the two:
-// contact is then as stiff as the row of particles next to it, and asks for no smaller steps.
+// contact is then as stiff as the row of particles next to it, and the step allows for it (added_stiffness.hpp).
 // The idea of a density of the other body is SPHinXsys's (Zhang et al. 2021), the energy behind it is not.
 #pragma once
 
 #include <string>
 
+#include "added_stiffness.hpp"
 #include "shoal/pair_operator.hpp"
 #include "shoal/physics.hpp"
 
@@ -80,6 +81,7 @@ struct ContactForce : PairOperator<ContactForce<Pairs>> {
   Accumulate<Vector> acceleration{"acceleration"};
   Pairs pairs_in_contact;
   double K = 0;  // Pa
+  SharedStiffness added;
 
   static constexpr bool skips_lonely = true;
   auto pair(const auto& p) const {

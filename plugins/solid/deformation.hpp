@@ -31,10 +31,7 @@ struct DeformationGradient : WeightBuilder {
   void run_chunk(const shoal_chunk& chunk) const {
     const double* x = position.of_neighbours(0);
     double *gradient = F.data(), *q = hourglass.data();
-    structure->weights.for_each_run(chunk.begin, chunk.end,
-                                    [&](std::uint64_t begin, std::uint64_t end, const Stencil& stencil) {
-                                      deform_run<D>(stencil, begin, end, x, stiffness_, gradient, q);
-                                    });
+    structure->weights.deform<D>(chunk.begin, chunk.end, x, stiffness_, gradient, q);
   }
 
  private:

@@ -37,10 +37,7 @@ struct InternalForce : ReferenceOperator {
     const double *stress = P.of_neighbours(0), *q = hourglass.of_neighbours(0);
     const double per_density = 1.0 / structure->constants.density;
     double* a = acceleration.data();
-    structure->weights.for_each_run(chunk.begin, chunk.end,
-                                    [&](std::uint64_t begin, std::uint64_t end, const Stencil& stencil) {
-                                      force_run<D, Hourglass>(stencil, begin, end, stress, q, per_density, a);
-                                    });
+    structure->weights.force<D, Hourglass>(chunk.begin, chunk.end, stress, q, per_density, a);
   }
 };
 

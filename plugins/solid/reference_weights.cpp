@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference_weights.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstring>
 #include <unordered_map>
@@ -125,9 +126,7 @@ void ReferenceWeights::linear_force(const Stiffness& stiffness, const double* u,
   if (space.stress.size() == 0) space.stress.assign(n_ * D * D), space.held.assign(n_ * D);
   double *stress = space.stress.data(), *held = space.held.data();
   const double q_factor = stiffness.hourglass / (spacing_ * spacing_);
-  for_each_run(0, n_, [&](std::uint64_t a, std::uint64_t b, const Stencil& stencil) {
-    deform_run<D>(stencil, a, b, u, q_factor, stress, held);
-  });
+  deform<D>(0, n_, u, q_factor, stress, held);
   for (std::uint64_t i = 0; i < n_; ++i) {
     Mat<D> gradient;
     std::copy_n(stress + i * D * D, D * D, gradient.e);
@@ -135,9 +134,7 @@ void ReferenceWeights::linear_force(const Stiffness& stiffness, const double* u,
     const Mat<D> s = stiffness.lambda * trace(strain) * identity<D>() + 2.0 * stiffness.mu * strain;
     std::copy_n(s.e, D * D, stress + i * D * D);
   }
-  for_each_run(0, n_, [&](std::uint64_t a, std::uint64_t b, const Stencil& stencil) {
-    force_run<D, true>(stencil, a, b, stress, held, 1.0, out);
-  });
+  force<D, true>(0, n_, stress, held, 1.0, out);
 }
 
 void ReferenceWeights::linear_force(const Stiffness& stiffness, const double* u, double* out,
@@ -145,29 +142,42 @@ void ReferenceWeights::linear_force(const Stiffness& stiffness, const double* u,
   dimensions_ == 2 ? linear_force<2>(stiffness, u, out, space) : linear_force<3>(stiffness, u, out, space);
 }
 
-// Small displacements u of an isotropic body: w^2 is the largest eigenvalue of u -> -f(u) / rho.
-double ReferenceWeights::largest_frequency(const Stiffness& stiffness) const {
-  constexpr int iterations = 60;
-  const std::size_t n = n_ * static_cast<std::size_t>(dimensions_);
-  AlignedNumbers u, f;
-  random_start(u);
-  f.assign(n);
+// Small displacements u of an isotropic body: w^2 is the largest eigenvalue of u -> -f(u) / rho, which is symmetric with
+// volumes as weights. The iteration of Lanczos (1950) finds it as that of a tridiagonal matrix; power iteration needs the
+// square of as many steps, since the upper end of the spectrum is dense.
+double ReferenceWeights::largest_frequency(const Stiffness& stiffness, const double* volume) const {
+  constexpr int most = 60;
+  const auto d = static_cast<std::size_t>(dimensions_);
+  const std::size_t n = n_ * d;
+  const auto product = [&](const double* a, const double* b) {
+    double sum = 0;
+    for (std::size_t k = 0; k < n; ++k) sum += volume[k / d] * a[k] * b[k];
+    return sum;
+  };
+  AlignedNumbers before, u, f;
+  before.assign(n), f.assign(n), random_start(u);
   LinearSpace space;
-  double square = 0;
-  for (int iteration = 0; iteration < iterations; ++iteration) {
-    double length = 0, along = 0;
-    for (std::size_t k = 0; k < n; ++k) length += u.data()[k] * u.data()[k];
-    const double scale = 1.0 / std::sqrt(length);
-    for (std::size_t k = 0; k < n; ++k) u.data()[k] *= scale;
+  std::vector<double> diagonal, beside;
+  double length = std::sqrt(product(u.data(), u.data()));
+  for (std::size_t k = 0; k < n; ++k) u.data()[k] /= length;
+  for (int iteration = 0; iteration < most; ++iteration) {
     linear_force(stiffness, u.data(), f.data(), space);
-    for (std::size_t k = 0; k < n; ++k) {
-      f.data()[k] *= -1.0 / stiffness.density;
-      along += u.data()[k] * f.data()[k];
-    }
-    square = along;
-    std::swap(u, f);
+    for (std::size_t k = 0; k < n; ++k)
+      f.data()[k] = f.data()[k] / -stiffness.density - (beside.empty() ? 0.0 : beside.back()) * before.data()[k];
+    diagonal.push_back(product(u.data(), f.data()));
+    for (std::size_t k = 0; k < n; ++k) f.data()[k] -= diagonal.back() * u.data()[k];
+    length = std::sqrt(product(f.data(), f.data()));
+    if (!(length > 1e-10 * diagonal.front())) break;
+    beside.push_back(length);
+    for (std::size_t k = 0; k < n; ++k) f.data()[k] /= length;
+    std::swap(before, u), std::swap(u, f);
   }
-  return std::sqrt(std::max(0.0, square));
+  const auto size = static_cast<Eigen::Index>(diagonal.size());
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal.data(), size),
+                                Eigen::Map<const Eigen::VectorXd>(beside.data(), std::max<Eigen::Index>(size - 1, 0)),
+                                Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[size - 1]));
 }
 
 }  // namespace shoal::solid

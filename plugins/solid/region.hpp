@@ -4,8 +4,10 @@
 // Part of a body, chosen by a condition on reference positions, or by a shape, or by both.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -65,6 +67,11 @@ class RegionValues {
   }
   bool looked() const { return region.looked(); }
   const std::vector<std::uint64_t>& particles() const { return particles_; }
+  // Those with numbers begin ... end - 1.
+  std::span<const std::uint64_t> particles(std::uint64_t begin, std::uint64_t end) const {
+    const auto from = std::lower_bound(particles_.begin(), particles_.end(), begin);
+    return {from, std::lower_bound(from, particles_.end(), end)};
+  }
   bool holds(std::uint64_t i) const { return region.holds(i); }
   // Written to `out` at the particles' own numbers.
   void evaluate(const Expression& expression, int dimensions, double time, std::vector<double>& out) const {

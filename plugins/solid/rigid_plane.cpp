@@ -18,6 +18,8 @@ void RigidPlane::build(const Builder& b) {
       op.normal = {given[0] / length, given[1] / length, given[2] / length};
       op.modulus = stiffness * wave_modulus(b, body);
       op.friction = friction;
+      op.added = added_stiffness(b, body);
+      *op.added += op.modulus / (b.body(body).spacing * b.body(body).spacing);
     });
 }
 

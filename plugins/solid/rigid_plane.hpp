@@ -10,6 +10,7 @@
 
 #include <cmath>
 
+#include "added_stiffness.hpp"
 #include "shoal/particle_operator.hpp"
 #include "shoal/physics.hpp"
 
@@ -24,6 +25,7 @@ struct PlaneForce : ParticleOperator<PlaneForce> {
   Vector3 point{}, normal{};
   double modulus = 0;   // stiffness M, Pa
   double friction = 0;  // mu
+  SharedStiffness added;
 
   void particle(auto i) const {
     constexpr int D = decltype(i)::dimensions;

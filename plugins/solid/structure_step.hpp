@@ -6,8 +6,10 @@
 //   v^(n+1)   = v^n + dt a(x^(n+1/2))                   Kick
 //   x^(n+1)   = x^(n+1/2) + dt/2 v^(n+1)                Kick
 // Stable for dt < 2 / w, w the largest angular frequency of the discrete body. That depends on the arrangement of the
-// particles more than on anything that a speed of sound and a smoothing length could tell, so it is found once by power
-// iteration on the undeformed body, and scaled by the speed of waves where the law says that it stiffens.
+// particles more than on anything that a speed of sound and a smoothing length could tell, so it is found once by
+// iteration on the undeformed body, and scaled by the speed of waves where the law says that it stiffens. Contact adds
+// to w^2 (added_stiffness.hpp). Damping at a rate 2 zeta w of the fastest mode is a step late, which leaves
+//   dt < 2 / w (sqrt(1 + zeta^2) - zeta).
 #pragma once
 
 #include <algorithm>
@@ -17,6 +19,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "added_stiffness.hpp"
 #include "shoal/particle_operator.hpp"
 #include "stress.hpp"
 
@@ -54,7 +57,7 @@ struct Kick : ParticleOperator<Kick> {
 };
 
 // How fast waves are on top of the deformation, for laws that stiffen. It costs about ten times the stress, so it is
-// looked at the more seldom the less it changes: the step keeps a fifth in hand for what happens between.
+// looked at the more seldom the less it changes, and taken to rise by as much again until it is looked at next.
 struct WaveSpeed : ParticleOperator<WaveSpeed> {
   In<Matrix> F{"deformation_gradient"};
   Maximum speed;
@@ -74,13 +77,14 @@ struct WaveSpeed : ParticleOperator<WaveSpeed> {
   }
   void end() {
     if (step().number < state_.next) return;
-    const double change = std::fabs(speed.result() / structure->wave_speed - 1.0);
-    if (change < 0.01)
+    const double rise = state_.last > 0.0 ? speed.result() / state_.last - 1.0 : 0.0;
+    if (std::fabs(rise) < 0.01)
       state_.interval = std::min<std::uint64_t>(2 * state_.interval, 80);
-    else if (!(change < 0.04))
+    else if (!(std::fabs(rise) < 0.04))
       state_.interval = std::max<std::uint64_t>(state_.interval / 2, 5);
     state_.next = step().number + state_.interval;
-    state_.speed = structure->wave_speed = speed.result();
+    state_.last = speed.result();
+    state_.speed = structure->wave_speed = state_.last * (1.0 + std::clamp(rise, 0.0, 0.25));
   }
   void save(const shoal_stream& stream) const {
     check_host(stream.write(stream.context, &state_, sizeof state_));
@@ -93,14 +97,16 @@ struct WaveSpeed : ParticleOperator<WaveSpeed> {
  private:
   struct State {
     std::uint64_t next = 0, interval = 5;  // steps
-    double speed = 0;                      // m/s
+    double last = 0, speed = 0;            // m/s; what was found, and what is reckoned with
   } state_;
 };
 
 // The largest step; looks at no particle but once.
 struct StableStep : WeightBuilder {
-  double factor = 0.8;   // of the limit of the undeformed body
-  double viscosity = 0;  // Pa s, of Kelvin-Voigt damping: its rate lags, which shortens the step
+  double factor = 0.95;          // of the limit of the undeformed body
+  double viscosity = 0;          // Pa s, of Kelvin-Voigt damping
+  double damping = 0;            // 1/s, rate at which all other damping takes velocity from the fastest mode, at most
+  SharedStiffness added;         // of contact
 
   void begin() {}
   template <int D>
@@ -109,16 +115,18 @@ struct StableStep : WeightBuilder {
   double time_step(double) const {
     if (limit_ == 0.0) {
       build_weights();
-      const double w = structure->weights.largest_frequency(structure->stiffness());
+      const double own = structure->weights.largest_frequency(structure->stiffness(), volume.data());
+      const double w = std::sqrt(own * own + *added / structure->constants.density);
       const double c = structure->constants.longitudinal_speed;
-      const double ratio = viscosity * w / (structure->constants.density * c * c);  // of critical damping
+      const double ratio =  // of critical damping
+          viscosity * w / (structure->constants.density * c * c) + 0.5 * damping / w;
       limit_ = 2.0 / w * (std::sqrt(1.0 + ratio * ratio) - ratio);
       const ForceConsistency& made = structure->weights.consistency();
       char text[160];
       std::snprintf(text, sizeof text,
                     "solid: force of a uniform stress inside %.2g, made %.2g in %d iterations; largest "
                     "frequency %.4g rad/s",
-                    made.before, made.after, made.iterations, w);
+                    made.before, made.after, made.iterations, own);
       log_debug(text);
     }
     const double undeformed = structure->constants.longitudinal_speed;

@@ -53,6 +53,9 @@ struct MovingBody : SolidBody {
       op.structure = structure;
       op.factor = motion.step_factor;
       op.viscosity = motion.viscosity;
+      op.damping = motion.damping + pair_damping_rate(motion.artificial_viscosity, structure->constants,
+                                                      structure->settings.smoothing_length, b.dimensions());
+      op.added = added_stiffness(b, body);
     });
   }
 };

@@ -31,7 +31,7 @@ struct TotalLagrangian final : SolidPhysics {
       example("0.02")};
   Param<double> step_factor{
       "step_factor", "1",          "Time step over the largest stable one of the undeformed body.",
-      positive,      at_most(1.0), default_to(0.8)};
+      positive,      at_most(1.0), default_to(0.95)};
 
   void build(const Builder& builder);
 };

@@ -29,7 +29,14 @@ inline Inverted invert(const Tensor& F) {
   return {J, (1.0 / J) * cofactors};
 }
 
-inline Tensor right_cauchy_green(const Tensor& F) { return transpose(F) * F; }
+// Symmetric: six products of columns, not nine.
+inline Tensor right_cauchy_green(const Tensor& F) {
+  Tensor C;
+  for (int r = 0; r < 3; ++r)
+    for (int c = r; c < 3; ++c)
+      C(r, c) = C(c, r) = F(0, r) * F(0, c) + F(1, r) * F(1, c) + F(2, r) * F(2, c);
+  return C;
+}
 
 // J^(-2/3)
 inline Pack isochoric_factor(Pack J) { return fast_exp((-2.0 / 3.0) * fast_log(J)); }

@@ -30,6 +30,7 @@
 #include "shoal/interfaces/stress_law.h"
 #include "shoal/law_point.hpp"
 #include "shoal/material.hpp"
+#include "shoal/pack_scatter.hpp"
 #include "shoal/vec.hpp"
 
 namespace shoal {
@@ -144,13 +145,11 @@ inline Mat<3, Pack> load_in_space(const double* F, int dimensions, IndexPack ind
   const Mat<2, Pack> plane = gather_mat<2>(F, index);
   return {plane(0, 0), plane(0, 1), 0.0, plane(1, 0), plane(1, 1), 0.0, 0.0, 0.0, 1.0};
 }
+// Lanes behind the last particle repeat it (LawPoint::indices), so writing them changes nothing.
 inline void store_from_space(const Mat<3, Pack>& P, int dimensions, const LawPoint& point, double* out) {
-  const auto d = static_cast<std::uint64_t>(dimensions);
-  for (std::uint64_t lane = 0; lane < point.n(); ++lane)
-    for (int row = 0; row < dimensions; ++row)
-      for (int column = 0; column < dimensions; ++column)
-        *(out + (point.first() + lane) * d * d + static_cast<std::uint64_t>(row * dimensions + column)) =
-            P(row, column)[static_cast<int>(lane)];
+  if (dimensions == 3) return scatter_tuple<9>(P.e, point.indices(), out);
+  const Pack plane[4] = {P(0, 0), P(0, 1), P(1, 0), P(1, 1)};
+  scatter_tuple<4>(plane, point.indices(), out);
 }
 inline void store_numbers(Pack x, const LawPoint& point, double* out) {
   for (std::uint64_t lane = 0; lane < point.n(); ++lane)

@@ -68,4 +68,40 @@ inline shoal::solid::ReferenceGeometry geometry(shoal::testing::Body& body) {
           body["signed_distance"].data()};
 }
 
+// The two sums of stencils.hpp for one particle, in plain loops.
+template <int D>
+struct Deformation {
+  shoal::Mat<D> gradient;
+  shoal::Vec<D> residual;
+};
+template <int D>
+Deformation<D> deformation(const shoal::solid::Stencil& stencil, const double* x, std::size_t i) {
+  Deformation<D> result{};
+  for (std::uint32_t m = 0; m < stencil.n; ++m) {
+    const double* w = stencil.forward + m * (D + 1);
+    const std::size_t j = i + static_cast<std::size_t>(stencil.offset[m]);
+    for (std::size_t r = 0; r < D; ++r) {
+      const double difference = x[j * D + r] - x[i * D + r];
+      for (int c = 0; c < D; ++c) result.gradient(static_cast<int>(r), c) += difference * w[c];
+      result.residual.e[r] -= difference * w[D];
+    }
+  }
+  return result;
+}
+template <int D>
+shoal::Vec<D> force(const shoal::solid::Stencil& stencil, const double* P, const double* q, bool hourglass,
+                    std::size_t i) {
+  shoal::Vec<D> f{};
+  for (std::uint32_t m = 0; m < stencil.n; ++m) {
+    const double *here = stencil.forward + m * (D + 1), *there = stencil.backward + m * (D + 1);
+    const std::size_t j = i + static_cast<std::size_t>(stencil.offset[m]);
+    for (std::size_t r = 0; r < D; ++r) {
+      for (std::size_t c = 0; c < D; ++c)
+        f.e[r] += P[i * D * D + r * D + c] * here[c] - P[j * D * D + r * D + c] * there[c];
+      if (hourglass) f.e[r] -= q[i * D + r] * here[D] - q[j * D + r] * there[D];
+    }
+  }
+  return f;
+}
+
 }  // namespace solid_test
