@@ -43,7 +43,8 @@ struct InitialKelvinVoigt : ParticleOperator<InitialKelvinVoigt> {
 
 // Rate at which pair damping takes velocity from a mode that alternates from particle to particle, at most: with
 // sum_j V_j |W'/r| = 3.5 / h^2 for the Wendland kernel C2, of which 1 / D acts along each axis, from both sides of a pair.
-inline double pair_damping_rate(double b, const shoal_elastic_constants& constants, double h, int dimensions) {
+inline double pair_damping_rate(double b, const shoal_elastic_constants& constants, double h,
+                                int dimensions) {
   return 4.0 * 3.5 / dimensions * b * constants.longitudinal_speed / h;
 }
 

@@ -163,7 +163,8 @@ double ReferenceWeights::largest_frequency(const Stiffness& stiffness, const dou
   for (int iteration = 0; iteration < most; ++iteration) {
     linear_force(stiffness, u.data(), f.data(), space);
     for (std::size_t k = 0; k < n; ++k)
-      f.data()[k] = f.data()[k] / -stiffness.density - (beside.empty() ? 0.0 : beside.back()) * before.data()[k];
+      f.data()[k] =
+          f.data()[k] / -stiffness.density - (beside.empty() ? 0.0 : beside.back()) * before.data()[k];
     diagonal.push_back(product(u.data(), f.data()));
     for (std::size_t k = 0; k < n; ++k) f.data()[k] -= diagonal.back() * u.data()[k];
     length = std::sqrt(product(f.data(), f.data()));
@@ -174,9 +175,10 @@ double ReferenceWeights::largest_frequency(const Stiffness& stiffness, const dou
   }
   const auto size = static_cast<Eigen::Index>(diagonal.size());
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal.data(), size),
-                                Eigen::Map<const Eigen::VectorXd>(beside.data(), std::max<Eigen::Index>(size - 1, 0)),
-                                Eigen::EigenvaluesOnly);
+  solver.computeFromTridiagonal(
+      Eigen::Map<const Eigen::VectorXd>(diagonal.data(), size),
+      Eigen::Map<const Eigen::VectorXd>(beside.data(), std::max<Eigen::Index>(size - 1, 0)),
+      Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(0.0, solver.eigenvalues()[size - 1]));
 }
 

@@ -122,9 +122,7 @@ class ReferenceWeights {
     const StencilArrays all = arrays();
     sweep(
         begin, end,
-        [&](const Stencil& stencil, std::uint64_t i) {
-          forces<D, Hourglass>(stencil, P, q, factor, i, out);
-        },
+        [&](const Stencil& stencil, std::uint64_t i) { forces<D, Hourglass>(stencil, P, q, factor, i, out); },
         [&](const Loners& loners) { forces<D, Hourglass>(all, loners, P, q, factor, out); });
   }
   std::size_t n_patterns() const { return patterns_.size(); }

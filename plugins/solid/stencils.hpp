@@ -143,38 +143,54 @@ class Loners {
   bool full() const { return size_ == lanes; }
   bool empty() const { return size_ == 0; }
   void add(std::uint64_t i, const Stencil& stencil) {
-    const int k = size_++;
-    i_[k] = static_cast<std::uint32_t>(i);
-    first_[k] = static_cast<std::uint32_t>(stencil.first);
-    n_[k] = stencil.n;
-    pattern_[k] = stencil.pattern;
+    lane_[size_++] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(stencil.first), stencil.n,
+                      stencil.pattern};
   }
   // Lanes that are left over repeat the last particle, which changes nothing.
   void close() {
-    for (int k = size_; k < lanes; ++k)
-      i_[k] = i_[k - 1], first_[k] = first_[k - 1], n_[k] = n_[k - 1], pattern_[k] = pattern_[k - 1];
+    least_ = UINT32_MAX, most_ = 0;
+    for (int k = 0; k < lanes; ++k) {
+      if (k >= size_) lane_[k] = lane_[k - 1];
+      i_[k] = lane_[k].i, pattern_[k] = lane_[k].pattern;
+      least_ = std::min(least_, lane_[k].n), most_ = std::max(most_, lane_[k].n);
+    }
     size_ = 0;
   }
   IndexPack particles() const { return IndexPack::load(i_); }
   IndexPack patterns() const { return IndexPack::load(pattern_); }
 
-  // function(neighbours, pairs); lanes that have no more neighbours get their own particle and weights of zero.
-  template <class Function>
+  // function(neighbours, where their weights begin); lanes that have no more neighbours get their own particle and
+  // weights of zero.
+  template <int D, class Function>
   void for_each_neighbour(const StencilArrays& arrays, const Function& function) const {
-    const std::uint32_t least = *std::min_element(n_, n_ + lanes), most = *std::max_element(n_, n_ + lanes);
-    std::uint32_t j[lanes], pair[lanes];
-    for (std::uint32_t m = 0; m < most; ++m) {
+    std::uint32_t j[lanes], at[lanes];
+    std::uint32_t m = 0;
+    for (; m < least_; ++m) {
+#pragma GCC unroll 8
       for (int k = 0; k < lanes; ++k) {
-        const bool has = m < least || m < n_[k];
-        pair[k] = has ? first_[k] + m : arrays.none;
-        j[k] = i_[k] + (has ? static_cast<std::uint32_t>(arrays.offset[pair[k]]) : 0u);
+        const std::uint32_t pair = lane_[k].first + m;
+        j[k] = lane_[k].i + static_cast<std::uint32_t>(arrays.offset[pair]);
+        at[k] = pair * (D + 1);
       }
-      function(IndexPack::load(j), IndexPack::load(pair));
+      function(IndexPack::load(j), IndexPack::load(at));
+    }
+    for (; m < most_; ++m) {
+      for (int k = 0; k < lanes; ++k) {
+        const bool has = m < lane_[k].n;
+        const std::uint32_t pair = has ? lane_[k].first + m : arrays.none;
+        j[k] = lane_[k].i + (has ? static_cast<std::uint32_t>(arrays.offset[pair]) : 0u);
+        at[k] = pair * (D + 1);
+      }
+      function(IndexPack::load(j), IndexPack::load(at));
     }
   }
 
  private:
-  std::uint32_t i_[lanes], first_[lanes], n_[lanes], pattern_[lanes];
+  struct Lane {
+    std::uint32_t i, first, n, pattern;
+  };
+  Lane lane_[lanes];
+  std::uint32_t i_[lanes], pattern_[lanes], least_ = 0, most_ = 0;
   int size_ = 0;
 };
 
@@ -186,9 +202,9 @@ void deformations(const StencilArrays& arrays, const Loners& loners, const doubl
   gather_tuple<D>(x, i, own);
   for (int r = 0; r < D; ++r)
     for (int c = 0; c <= D; ++c) sum[r][c] = 0.0;
-  loners.for_each_neighbour(arrays, [&](IndexPack j, IndexPack pair) {
+  loners.for_each_neighbour<D>(arrays, [&](IndexPack j, IndexPack at) {
     gather_tuple<D>(x, j, theirs);
-    gather_tuple<D + 1>(arrays.forward, pair, w);
+    gather_tuple<D + 1, 1>(arrays.forward, at, w);
     for (int r = 0; r < D; ++r) {
       const Pack difference = theirs[r] - own[r];
       for (int c = 0; c <= D; ++c) sum[r][c] += difference * w[c];
@@ -208,18 +224,19 @@ void forces(const StencilArrays& arrays, const Loners& loners, const double* P, 
             double factor, double* out) {
   const IndexPack i = loners.particles();
   Pack stress[D * D], control[D], w[D + 1], sum[D][D + 1];
-  const auto look = [&](IndexPack j, const double* weights, IndexPack at) {
+  const auto look = [&](IndexPack j) {
     gather_tuple<D * D>(P, j, stress);
     if constexpr (Hourglass) gather_tuple<D>(q, j, control);
-    gather_tuple<D + 1>(weights, at, w);
   };
-  look(i, arrays.sums, loners.patterns());
+  look(i);
+  gather_tuple<D + 1>(arrays.sums, loners.patterns(), w);
   for (int r = 0; r < D; ++r) {
     for (int c = 0; c < D; ++c) sum[r][c] = stress[r * D + c] * w[c];
     if constexpr (Hourglass) sum[r][D] = control[r] * w[D];
   }
-  loners.for_each_neighbour(arrays, [&](IndexPack j, IndexPack pair) {
-    look(j, arrays.backward, pair);
+  loners.for_each_neighbour<D>(arrays, [&](IndexPack j, IndexPack at) {
+    look(j);
+    gather_tuple<D + 1, 1>(arrays.backward, at, w);
     for (int r = 0; r < D; ++r) {
       for (int c = 0; c < D; ++c) sum[r][c] -= stress[r * D + c] * w[c];
       if constexpr (Hourglass) sum[r][D] -= control[r] * w[D];

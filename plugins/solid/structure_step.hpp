@@ -103,10 +103,10 @@ struct WaveSpeed : ParticleOperator<WaveSpeed> {
 
 // The largest step; looks at no particle but once.
 struct StableStep : WeightBuilder {
-  double factor = 0.95;          // of the limit of the undeformed body
-  double viscosity = 0;          // Pa s, of Kelvin-Voigt damping
-  double damping = 0;            // 1/s, rate at which all other damping takes velocity from the fastest mode, at most
-  SharedStiffness added;         // of contact
+  double factor = 0.95;  // of the limit of the undeformed body
+  double viscosity = 0;  // Pa s, of Kelvin-Voigt damping
+  double damping = 0;    // 1/s, rate at which all other damping takes velocity from the fastest mode, at most
+  SharedStiffness added;  // of contact
 
   void begin() {}
   template <int D>

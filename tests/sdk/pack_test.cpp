@@ -5,6 +5,7 @@
 // zeros of both signs, infinities, denormals and NaN.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "shoal/pack.hpp"
+#include "shoal/pack_scatter.hpp"
 
 namespace {
 
@@ -215,6 +217,36 @@ TEST_CASE("gather_tuple reads numbers that lie together") {
   check_tuple<27, 27>();
   check_tuple<2, 5>();
   check_tuple<4, 9>();
+}
+
+template <int N, int Stride>
+void check_scatter() {
+  constexpr std::size_t n = 40;
+  std::vector<double> base(n * Stride + 1, -1.0);
+  std::uint32_t index[lanes];
+  for (int k = 0; k < lanes; ++k) index[k] = static_cast<std::uint32_t>((7 * k + 3) % 37);
+  index[lanes - 1] = index[0];  // two lanes that hold the same numbers
+  Pack packs[N];
+  for (int c = 0; c < N; ++c)
+    for (int k = 0; k < lanes; ++k) packs[c].set(k, 100.0 * index[k] + c);
+  shoal::scatter_tuple<N, Stride>(packs, IndexPack::load(index), base.data());
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const bool written = std::find(index, index + lanes, i) != index + lanes;
+    for (int c = 0; c < Stride; ++c)
+      CHECK(base[i * Stride + static_cast<std::uint32_t>(c)] == (written && c < N ? 100.0 * i + c : -1.0));
+  }
+  CHECK(base.back() == -1.0);
+}
+
+TEST_CASE("scatter_tuple writes what gather_tuple reads, and nothing else") {
+  check_scatter<1, 1>();
+  check_scatter<2, 2>();
+  check_scatter<3, 3>();
+  check_scatter<4, 4>();
+  check_scatter<9, 9>();
+  check_scatter<2, 5>();
+  check_scatter<4, 9>();
+  check_scatter<5, 6>();
 }
 
 TEST_CASE("inverse root and reciprocal are good to two units in the last place over all magnitudes") {

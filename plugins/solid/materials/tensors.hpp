@@ -33,8 +33,7 @@ inline Inverted invert(const Tensor& F) {
 inline Tensor right_cauchy_green(const Tensor& F) {
   Tensor C;
   for (int r = 0; r < 3; ++r)
-    for (int c = r; c < 3; ++c)
-      C(r, c) = C(c, r) = F(0, r) * F(0, c) + F(1, r) * F(1, c) + F(2, r) * F(2, c);
+    for (int c = r; c < 3; ++c) C(r, c) = C(c, r) = F(0, r) * F(0, c) + F(1, r) * F(1, c) + F(2, r) * F(2, c);
   return C;
 }
 
