@@ -46,21 +46,20 @@ bool FileBuffer::fail() {
   return false;
 }
 
-bool FileBuffer::flush() {
-  if (error_ != 0) return false;
-  for (const char* begin = pbase(); begin != pptr();) {
+void FileBuffer::flush() {
+  for (const char* begin = pbase(); begin != pptr() && error_ == 0;) {
     const ssize_t written = ::write(file_, begin, static_cast<std::size_t>(pptr() - begin));
     if (written >= 0)
       begin += written;
     else if (errno != EINTR)
-      return fail();
+      fail();
   }
   setp(buffer_.data(), buffer_.data() + buffer_.size());
-  return true;
 }
 
 bool FileBuffer::finish() {
-  if (!flush()) return false;
+  flush();
+  if (error_ != 0) return false;
   const bool synchronised = synchronise(file_) || fail();
   // Network file systems may report only now that data did not arrive.
   const bool closed = ::close(std::exchange(file_, -1)) == 0 || fail();
@@ -68,17 +67,20 @@ bool FileBuffer::finish() {
 }
 
 FileBuffer::int_type FileBuffer::overflow(int_type character) {
-  if (!flush()) return traits_type::eof();
+  flush();
   if (!traits_type::eq_int_type(character, traits_type::eof())) sputc(traits_type::to_char_type(character));
   return traits_type::not_eof(character);
 }
 
-int FileBuffer::sync() { return flush() ? 0 : -1; }
+int FileBuffer::sync() {
+  flush();
+  return 0;
+}
 
 FileBuffer::pos_type FileBuffer::seekoff(off_type offset, std::ios_base::seekdir from,
                                          std::ios_base::openmode) {
   const int whence = from == std::ios_base::beg ? SEEK_SET : from == std::ios_base::cur ? SEEK_CUR : SEEK_END;
-  if (!flush()) return pos_type(off_type(-1));
+  flush();
   const off_t position = ::lseek(file_, offset, whence);
   if (position < 0) fail();
   return pos_type(position);

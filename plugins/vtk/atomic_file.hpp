@@ -20,7 +20,8 @@ struct WriteFailed : std::runtime_error {
   WriteFailed(const std::filesystem::path& file, int system_error);
 };
 
-// std::filebuf, but one that knows why it failed, and whose file can be synchronised with the disk.
+// std::filebuf, but one that knows why it failed, and whose file can be synchronised with the disk. Behind a failure it
+// swallows what comes: VTK 9.1 crashes when its stream fails in the middle of an array.
 class FileBuffer final : public std::streambuf {
  public:
   explicit FileBuffer(const std::filesystem::path& file);  // made anew; see error()
@@ -40,7 +41,7 @@ class FileBuffer final : public std::streambuf {
   pos_type seekpos(pos_type position, std::ios_base::openmode which) override;
 
  private:
-  bool flush();
+  void flush();
   bool fail();
 
   int file_;

@@ -76,8 +76,9 @@ void write_picture(vtkPolyData* picture, const std::filesystem::path& target,
   const vtkNew<StreamWriter> writer;
   writer->SetInputData(picture);
   writer->SetStream(&file.stream());
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
+  // Not appended behind the XML: since expat 2.6, whose changes Debian 12 has taken over, VTK before 9.3 and with it
+  // ParaView before 5.12.1 do not find such arrays.
+  writer->SetDataModeToBinary();
   writer->SetHeaderTypeToUInt64();
   choose_compressor(writer, compression);
   const bool complete = writer->Write() == 1 && writer->GetErrorCode() == vtkErrorCode::NoError;
