@@ -8,6 +8,7 @@
 
 RADIUS is that of the dots, in spacings: 0.71 leaves no gaps on a lattice.
 """
+import base64
 import struct
 import sys
 import xml.etree.ElementTree as xml
@@ -20,19 +21,16 @@ RAMP = [(11, 37, 84), (16, 94, 140), (30, 152, 166), (128, 204, 180), (240, 246,
 
 
 def read_arrays(path):
-    """Arrays of a VTP file with appended, raw, zlib-compressed data, by name."""
-    data = open(path, "rb").read()
-    begin = data.index(b'<AppendedData encoding="raw">')
-    start = data.index(b"_", begin) + 1
-    header = xml.fromstring(data[:begin].decode() + "</VTKFile>")
+    """Arrays of a VTP file with zlib-compressed data in base64, by name."""
     arrays = {}
-    for piece in header.iter("Piece"):
+    for piece in xml.parse(path).iter("Piece"):
         for array in list(piece.find("PointData")) + list(piece.find("Points")):
-            at = start + int(array.get("offset"))
-            blocks, _, _ = struct.unpack_from("<3Q", data, at)
-            sizes = struct.unpack_from(f"<{blocks}Q", data, at + 24)
-            at += 24 + 8 * blocks
-            raw = b""
+            text = array.text.strip()
+            blocks, = struct.unpack("<Q", base64.b64decode(text[:12])[:8])
+            # Number, length and last length of the blocks, and how long each is compressed; encoded by itself.
+            head = 4 * ((24 + 8 * blocks + 2) // 3)
+            sizes = struct.unpack(f"<{3 + blocks}Q", base64.b64decode(text[:head]))[3:]
+            data, at, raw = base64.b64decode(text[head:]), 0, b""
             for size in sizes:
                 raw += zlib.decompress(data[at:at + size])
                 at += size
