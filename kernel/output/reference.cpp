@@ -258,6 +258,7 @@ ReferenceResult compare(const ReferenceSpecification& specification, const Serie
       specification.average > 0.0 ? averaged(as_sampled, specification.average) : as_sampled;
   ReferenceResult result;
   result.probe = specification.probe;
+  result.column = specification.column;
   result.source =
       specification.exact ? "exact: " + specification.exact_text : specification.data.filename().string();
   result.measure = std::string(name_of(specification.measure));

@@ -55,6 +55,7 @@ std::string_view name_of(Verdict verdict);
 
 struct ReferenceResult {
   std::string probe, source;
+  std::string column;  ///< of the probe's file; empty for the first
   std::string measure;
   double error = 0.0;  ///< NaN where nothing could be compared
   double tolerance = 0.0;

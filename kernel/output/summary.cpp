@@ -68,6 +68,7 @@ Json references(const std::vector<ReferenceResult>& results) {
   Json list = Json::array();
   for (const ReferenceResult& result : results) {
     list.push_back({{"probe", result.probe},
+                    {"column", result.column},
                     {"source", result.source},
                     {"measure", result.measure},
                     {"error", number(result.error)},

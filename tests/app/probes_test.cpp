@@ -64,6 +64,7 @@ TEST_CASE("maximum, minimum, sum and mean of expressions, with conditions") {
   energy: {sum: {of: 0.5 * mass * velocity.magnitude^2, body: pile, unit: J}, every: 1 ms}
   demanded: {sum: {of: kinetic_energy, body: pile}, every: 1 ms}
   left_speed: {mean: {of: [velocity.x, velocity.y], body: pile, where: "position.x < 1 && position.y > 1"}, every: 1 ms}
+  momentum: {sum: {of: "mass^2*velocity.magnitude^2", body: pile, root: true}, every: 1 ms}
   none: {mean: {of: mass, body: pile, where: "x > 5"}, every: 1 ms}
   nothing: {sum: {of: mass, body: pile, where: "x > 5"}, every: 1 ms}
 )"));
@@ -83,6 +84,7 @@ TEST_CASE("maximum, minimum, sum and mean of expressions, with conditions") {
     ++n;
   }
   CHECK(first("reduce", "energy")[0] == doctest::Approx(energy).epsilon(1e-12));
+  CHECK(first("reduce", "momentum")[0] == doctest::Approx(std::sqrt(2.0 * 10.0 * energy)).epsilon(1e-12));
   CHECK(first("reduce", "demanded")[0] == doctest::Approx(energy).epsilon(1e-12));
   CHECK(first("reduce", "left_speed")[0] == doctest::Approx(sum_x / n).epsilon(1e-12));
   CHECK(first("reduce", "left_speed")[1] == doctest::Approx(sum_y / n).epsilon(1e-12));

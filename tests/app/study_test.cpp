@@ -173,7 +173,9 @@ TEST_CASE("a report holds what its cases give, and runs nothing twice") {
   const std::string page = read("report/report.md");
   CHECK(contains(page, "## soft/pile: Falling grains\n\nGrains with a known error.\n\nPlugins: grains"));
   CHECK(contains(page, "| 0.1 | finished | 200 |"));
-  CHECK(contains(page, "| 1.0 % | 100 % | 2.00 |"));
+  CHECK(contains(page, "| reference | tolerance | dx = 0.2 | dx = 0.1 | last order |"));
+  CHECK(contains(page, "| height max | 100 % | 4.0 % | 1.0 % | 2.00 |"));
+  CHECK(contains(page, "| soft/pile | Falling grains | 2 | 1.0 % | 100 % | height max | 2.00 |"));
   CHECK(contains(page, "The study ended with exit code 3 (a run failed)."));
   CHECK(contains(page, "grains.repulsion"));
   const std::string html = read("report/report.html");

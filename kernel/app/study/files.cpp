@@ -103,7 +103,13 @@ std::string picture(const std::vector<Curve>& all, const std::string& name, cons
 std::vector<std::string> error_names(const Study& study) {
   std::vector<std::string> names;
   if (const StudyResult* result = with_errors(study))
-    for (const StudyError& error : result->errors) names.push_back(error.probe + " " + error.measure);
+    for (const StudyError& error : result->errors) {
+      const std::string of = error.probe + (error.column.empty() ? "" : "." + error.column);
+      std::string name = of + " " + error.measure;
+      for (int k = 2; std::find(names.begin(), names.end(), name) != names.end(); ++k)
+        name = fmt::format("{} {} {}", of, k, error.measure);
+      names.push_back(name);
+    }
   return names;
 }
 
@@ -174,7 +180,9 @@ std::string study_csv(const Study& study) {
 
 std::string study_plot(const Study& study) {
   const std::vector<Curve> all = curves(study);
-  if (all.empty()) return {};
+  std::size_t points = 0;
+  for (const Curve& curve : all) points += curve.points.size();
+  if (points < 2) return {};
   std::string text = "# Drawn with: gnuplot study.gnuplot\n";
   for (std::size_t k = 0; k < all.size(); ++k) {
     text += fmt::format("$curve{} << END\n", k);

@@ -43,13 +43,70 @@ std::string heading(std::string column) {
   return column;
 }
 
-// The columns that a page shows; all others are in study.csv.
-Rows shown(const CaseReport& report) {
+// study.csv by the meaning of its columns: first the variations, at the end three columns for each reference.
+class StudyTable {
+ public:
+  using Cells = std::vector<std::string>;
+
+  explicit StudyTable(const std::vector<Cells>& table) : table_(table) {
+    for (std::size_t c = 0; !table.empty() && c < table[0].size(); ++c) {
+      if (table[0][c].ends_with(" error")) references_.push_back(c);
+    }
+  }
+  std::size_t runs() const { return table_.size() < 2 ? 0 : table_.size() - 1; }
+  const std::vector<std::size_t>& references() const { return references_; }
+  std::string name(std::size_t reference) const {
+    return table_[0][reference].substr(0, table_[0][reference].size() - 6);
+  }
+  /// Of run 1, 2, ...
+  std::optional<double> error(std::size_t run, std::size_t reference) const { return value(run, reference); }
+  std::optional<double> tolerance(std::size_t run, std::size_t reference) const {
+    return value(run, reference + 1);
+  }
+  std::string text(std::size_t run, std::size_t column) const {
+    return column < table_[run].size() ? readable(table_[0][column], table_[run][column]) : "";
+  }
+  std::string text(std::size_t run, const std::string& column) const {
+    const auto at = std::find(table_[0].begin(), table_[0].end(), column);
+    return text(run, static_cast<std::size_t>(at - table_[0].begin()));
+  }
+  /// "dx = $H/40, scheme = edac"; "error" where nothing is varied.
+  std::string label(std::size_t run) const {
+    std::string text;
+    for (std::size_t c = 1; c < table_[0].size() && table_[0][c] != "status"; ++c)
+      text += (text.empty() ? "" : ", ") + table_[0][c].substr(table_[0][c].rfind('.') + 1) + " = " +
+              table_[run][c];
+    return text.empty() ? "error" : text;
+  }
+  /// The reference that a run misses most, or meets with least to spare; nothing if one has no error.
+  std::optional<std::size_t> hardest(std::size_t run) const {
+    std::optional<std::size_t> worst;
+    for (const std::size_t r : references_) {
+      if (!error(run, r) || !tolerance(run, r)) return std::nullopt;
+      if (!worst || share(run, r) > share(run, *worst)) worst = r;
+    }
+    return worst;
+  }
+  double share(std::size_t run, std::size_t reference) const {
+    return *error(run, reference) / *tolerance(run, reference);
+  }
+
+ private:
+  std::optional<double> value(std::size_t run, std::size_t column) const {
+    return column < table_[run].size() ? number(table_[run][column]) : std::nullopt;
+  }
+  const std::vector<Cells>& table_;
+  std::vector<std::size_t> references_;
+};
+
+// What the runs cost: all columns that do not compare; those left out are in study.csv.
+Rows costs(const CaseReport& report) {
   Rows rows;
   if (report.table.empty()) return rows;
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < report.table[0].size(); ++c) {
     const std::string& name = report.table[0][c];
+    if (name.ends_with(" error")) break;
     if (name != "run" && name != "outer_steps" && name != "spacing [m]") columns.push_back(c);
   }
   for (const auto& row : report.table) {
@@ -111,41 +168,52 @@ std::string machine_text(const MachineReport& machine) {
                      machine.threads, machine.version, machine.date);
 }
 
-// The best of each case on one line: the overview.
+// How far the runs are from each reference.
+Rows errors(const CaseReport& report) {
+  const StudyTable table(report.table);
+  if (table.runs() == 0 || table.references().empty()) return {};
+  Rows rows{{"reference", "tolerance"}};
+  for (std::size_t run = 1; run <= table.runs(); ++run) rows[0].push_back(table.label(run));
+  rows[0].push_back("last order");
+  for (const std::size_t r : table.references()) {
+    auto& row = rows.emplace_back(std::vector<std::string>{table.name(r), table.text(1, r + 1)});
+    std::string order;
+    for (std::size_t run = 1; run <= table.runs(); ++run) {
+      row.push_back(table.text(run, r));
+      if (const std::string own = table.text(run, r + 2); !own.empty()) order = own;
+    }
+    row.push_back(order);
+  }
+  return rows;
+}
+
+// The best run of each case on one line: that whose hardest reference is met best.
 Rows overview(const std::vector<CaseReport>& cases) {
-  Rows rows{{"case", "what", "runs", "smallest error", "of", "last order", "wall time of that run",
+  Rows rows{{"case", "what", "runs", "largest error", "tolerance", "of reference", "order", "wall time",
              "bytes per particle"}};
   for (const CaseReport& report : cases) {
     auto& row = rows.emplace_back(std::vector<std::string>{report.area + "/" + report.name, report.title});
-    if (report.table.size() < 2) {
-      row.insert(row.end(), {"0", report.failure, "", "", "", ""});
+    const StudyTable table(report.table);
+    if (table.runs() == 0) {
+      row.insert(row.end(), {"0", report.failure, "", "", "", "", ""});
       continue;
     }
-    const auto& names = report.table[0];
-    const auto at = [&](const std::string& name) {
-      return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-    };
-    const auto first_error = std::find_if(names.begin(), names.end(),
-                                          [](const std::string& name) { return name.ends_with(" error"); });
-    std::size_t best = 0;
-    for (std::size_t r = 1; r < report.table.size() && first_error != names.end(); ++r) {
-      const auto c = static_cast<std::size_t>(first_error - names.begin());
-      const auto value = number(report.table[r][c]);
-      const auto so_far = best > 0 ? number(report.table[best][c]) : std::nullopt;
-      if (value && (!so_far || *value < *so_far)) best = r;
+    row.push_back(std::to_string(table.runs()));
+    std::optional<std::size_t> best;
+    for (std::size_t run = 1; run <= table.runs(); ++run) {
+      if (const auto r = table.hardest(run))
+        if (!best || table.share(run, *r) < table.share(*best, *table.hardest(*best))) best = run;
     }
-    row.push_back(std::to_string(report.table.size() - 1));
-    if (best == 0) {
-      row.insert(row.end(), {"-", "no reference", "", "", ""});
-      continue;
+    const std::size_t run = best.value_or(table.runs());
+    if (best) {
+      const std::size_t r = *table.hardest(run);
+      row.insert(row.end(),
+                 {table.text(run, r), table.text(run, r + 1), table.name(r), table.text(run, r + 2)});
+    } else {
+      row.insert(row.end(), {table.references().empty() ? "no reference" : "not all compared", "", "", ""});
     }
-    const auto c = static_cast<std::size_t>(first_error - names.begin());
-    const auto& cells = report.table[best];
-    row.push_back(readable(names[c], cells[c]));
-    row.push_back(first_error->substr(0, first_error->size() - 6));
-    row.push_back(readable(names[c + 2], cells[c + 2]));
-    row.push_back(readable("wall_time [s]", cells[at("wall_time [s]")]));
-    row.push_back(readable("", cells[at("bytes_per_particle [byte]")]));
+    row.push_back(table.text(run, "wall_time [s]"));
+    row.push_back(table.text(run, "bytes_per_particle [byte]"));
   }
   return rows;
 }
@@ -172,7 +240,8 @@ std::string markdown_page(const MachineReport& machine, const std::vector<CaseRe
     if (!report.what.empty()) text += report.what + "\n\n";
     text += "Plugins: " + report.plugins + ".\n\n";
     if (!report.failure.empty()) text += "**" + report.failure + "**\n\n";
-    text += markdown_table(shown(report)) + "\n";
+    for (const Rows& rows : {errors(report), costs(report)})
+      if (!rows.empty()) text += markdown_table(rows) + "\n";
     for (const auto& [name, svg] : report.pictures)
       text += fmt::format("![{}]({})\n", heading(name), picture_file(report, name));
     text += "\n<details><summary>Plan of a run</summary>\n\n```\n" + report.plan + "```\n\n</details>\n";
@@ -191,7 +260,8 @@ std::string html_page(const MachineReport& machine, const std::vector<CaseReport
     text += fmt::format("<h2>{}/{}: {}</h2>\n<p>{}</p>\n<p>Plugins: {}.</p>\n", report.area, report.name,
                         escaped(report.title), escaped(report.what), escaped(report.plugins));
     if (!report.failure.empty()) text += "<p><strong>" + escaped(report.failure) + "</strong></p>\n";
-    text += html_table(shown(report));
+    for (const Rows& rows : {errors(report), costs(report)})
+      if (!rows.empty()) text += html_table(rows);
     for (const auto& [name, svg] : report.pictures)
       text += svg.substr(std::min(svg.find("<svg"), svg.size())) + "\n";
     text += "<details><summary>Plan of a run</summary><pre>" + escaped(report.plan) + "</pre></details>\n";

@@ -40,7 +40,7 @@ void fill(StudyResult& result, const Json& summary) {
   result.peak_memory = cost.at("peak_memory_bytes").get<std::uint64_t>();
   result.bytes_per_particle = number(cost.at("field_and_list_bytes_per_particle"));
   for (const Json& reference : summary.at("references"))
-    result.errors.push_back({reference.at("probe").get<std::string>(),
+    result.errors.push_back({reference.at("probe").get<std::string>(), reference.value("column", ""),
                              reference.at("measure").get<std::string>(), number(reference.at("error")),
                              number(reference.at("tolerance"))});
 }

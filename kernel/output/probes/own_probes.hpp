@@ -24,6 +24,10 @@ struct ReductionParameters : Parameterised {
                                      example("water")};
   Param<std::string> where{"where", nullptr, "Only particles for which this condition holds count.", optional,
                            example("position.y > 0.1")};
+  Param<bool> root{
+      "root", nullptr,
+      "Whether the square root of the result is taken: of the mean of squares it is the root mean square.",
+      default_to(false)};
   Param<std::string> unit{"unit", nullptr, "Unit of the result, for the head of the table.", optional,
                           example("J")};
 };

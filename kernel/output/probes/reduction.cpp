@@ -63,9 +63,9 @@ class Reduction final : public Probe {
       if (where_) where_->bind(run, body.value);
     }
     for (const ParticleExpression& expression : of_) {
-      const std::string unit = parameters_.unit.is_set()
-                                   ? parameters_.unit.value()
-                                   : expression.unit(run, parameters_.body.value()[0].value);
+      const std::string unit = parameters_.unit.is_set() ? parameters_.unit.value()
+                               : parameters_.root        ? ""
+                                                  : expression.unit(run, parameters_.body.value()[0].value);
       columns_.push_back({of_.size() == 1 ? name_ : expression.text(), unit});
     }
   }
@@ -74,7 +74,10 @@ class Reduction final : public Probe {
 
   std::vector<double> sample(const Simulation& run) override {
     std::vector<double> values;
-    for (const ParticleExpression& expression : of_) values.push_back(reduce(run, expression));
+    for (const ParticleExpression& expression : of_) {
+      const double value = reduce(run, expression);
+      values.push_back(parameters_.root ? std::sqrt(value) : value);
+    }
     return values;
   }
 
