@@ -17,7 +17,7 @@ namespace shoal::kernel::app {
 
 struct StudyError {
   std::string probe, column, measure;  ///< column: empty for the probe's first
-  double error = 0.0;  ///< NaN where the run has none
+  double error = 0.0;                  ///< NaN where the run has none
   double tolerance = 0.0;
 };
 
