@@ -116,6 +116,18 @@ inline std::vector<std::vector<double>> rows(const std::filesystem::path& path) 
   return all;
 }
 
+/// All fields of all particles in the newest checkpoint; before them stand wall times and counts of built lists.
+inline std::string final_fields(const std::string& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder + "/checkpoints"))
+    files.push_back(entry.path());
+  REQUIRE_FALSE(files.empty());
+  const std::string text = read(*std::max_element(files.begin(), files.end()));
+  const std::size_t first_body = text.find(std::string("body\0", 5));
+  REQUIRE(first_body != std::string::npos);
+  return text.substr(first_body);
+}
+
 /// A pile of 20 x 10 grains above a floor; `more` are further sections.
 inline std::string grains(const std::string& more, const std::string& falling = "bodies: [pile]",
                           const std::string& end = "0.1") {

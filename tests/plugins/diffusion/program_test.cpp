@@ -3,7 +3,6 @@
 //
 // The program with the diffusion plugin: the same bits on one thread, on two and after a restart; plans in which only
 // what the case asks for stands; and what it says to cases that cannot be.
-#include <set>
 
 #include "kernel/particles/parallel.hpp"
 #include "tests/app/support.hpp"
@@ -41,18 +40,6 @@ const std::string probes =
     "probes:\n"
     "  content: {sum: {of: temperature*volume, body: plate}, every: 0.2 ms}\n"
     "  highest: {maximum: {of: temperature, body: plate}, every: 0.2 ms}\n";
-
-// All fields of all particles in the newest checkpoint; before them stand wall times and counts of built lists.
-std::string final_fields(const std::string& folder) {
-  std::set<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder + "/checkpoints"))
-    files.insert(entry.path());
-  REQUIRE_FALSE(files.empty());
-  const std::string text = read(*files.rbegin());
-  const std::size_t first_body = text.find(std::string("body\0", 5));
-  REQUIRE(first_body != std::string::npos);
-  return text.substr(first_body);
-}
 
 void check_same(const std::string& a, const std::string& b) {
   CAPTURE(a);

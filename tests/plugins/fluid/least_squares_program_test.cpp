@@ -4,7 +4,6 @@
 // The program with fluid.least_squares on the Taylor-Green vortex: order of convergence, Re 10 000, the same bits on any
 // number of threads and after a restart, and what a plan holds.
 #include <cmath>
-#include <set>
 
 #include "kernel/particles/parallel.hpp"
 #include "tests/app/support.hpp"

@@ -4,7 +4,6 @@
 // The program with inlets and outlets: the same bits on one thread, on two and after a restart, the balance of mass, and
 // what is refused.
 #include <cmath>
-#include <set>
 
 #include "tests/app/support.hpp"
 
@@ -44,17 +43,6 @@ std::string channel(const std::string& inflow = "velocity: [U, 0]",
          "  particles: {sum: {of: 1 + 0*mass, body: water}, every: 10 ms}\n";
 }
 
-std::string fields(const std::string& folder) {
-  std::set<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder + "/checkpoints"))
-    files.insert(entry.path());
-  REQUIRE_FALSE(files.empty());
-  const std::string text = read(*files.rbegin());
-  const std::size_t first_body = text.find(std::string("body\0", 5));
-  REQUIRE(first_body != std::string::npos);
-  return text.substr(first_body);
-}
-
 double last(const std::string& folder, const char* probe) {
   const auto table = rows(folder + "/probes/" + probe + ".csv");
   return table.back().at(1);
@@ -81,7 +69,7 @@ TEST_CASE("inlet and outlet: the same bits on any number of threads and after re
   REQUIRE(app_test::shoal({"resume", "parts", "--threads", "1"}).code == 0);
   for (const char* other : {"two", "parts"}) {
     CAPTURE(other);
-    const bool same = fields("one") == fields(other);
+    const bool same = final_fields("one") == final_fields(other);
     CHECK(same);
     for (const char* probe : {"entered", "left", "inside", "particles"})
       CHECK(read(std::string("one/probes/") + probe + ".csv") ==

@@ -40,18 +40,6 @@ std::string dam(const std::string& more) {
 constexpr std::uint64_t water_particles = 120 * 60;
 static_assert(water_particles > shoal::kernel::serial_below, "else no thread but one is ever used");
 
-// All fields of all particles in the newest checkpoint; before them stand wall times and counts of built lists.
-std::string final_fields(const std::string& folder) {
-  std::set<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder + "/checkpoints"))
-    files.insert(entry.path());
-  REQUIRE_FALSE(files.empty());
-  const std::string text = read(*files.rbegin());
-  const std::size_t first_body = text.find(std::string("body\0", 5));
-  REQUIRE(first_body != std::string::npos);
-  return text.substr(first_body);
-}
-
 void check_same(const std::string& a, const std::string& b) {
   CAPTURE(a);
   CAPTURE(b);

@@ -3,7 +3,6 @@
 //
 // The program with solids in contact, one of them plastic: the same bits on one thread, on two and after a restart; a
 // plan without what is not asked for; and what a user reads.
-#include <set>
 
 #include "kernel/particles/parallel.hpp"
 #include "tests/app/support.hpp"
@@ -40,17 +39,6 @@ const std::string with_friction = "  - solid.contact: {bodies: [hard, soft], sel
 
 constexpr std::uint64_t particles = 100 * 60;
 static_assert(particles > shoal::kernel::serial_below, "else no thread but one is ever used");
-
-std::string final_fields(const std::string& folder) {
-  std::set<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder + "/checkpoints"))
-    files.insert(entry.path());
-  REQUIRE_FALSE(files.empty());
-  const std::string text = read(*files.rbegin());
-  const std::size_t first_body = text.find(std::string("body\0", 5));
-  REQUIRE(first_body != std::string::npos);
-  return text.substr(first_body);
-}
 
 void check_same(const std::string& a, const std::string& b) {
   for (const char* probe : {"push", "flow"}) {
