@@ -50,6 +50,10 @@ struct PointParameters : Parameterised {
       between(0, 1),
       default_to(0.05),
       example("0.25")};
+  Param<bool> linear{"linear", nullptr,
+                     "Whether linear fields are interpolated exactly, also towards a wall, a surface or a "
+                     "corner beyond the last particles.",
+                     default_to(false)};
   Param<double> diameter{"diameter",
                          "m",
                          "With it the mean over a disc of this size about the point, as a gauge in a wall "

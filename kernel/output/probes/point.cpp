@@ -5,7 +5,13 @@
 //
 //   f(x) = sum_j V_j f_j W(|x - x_j|) / sum_j V_j W(|x - x_j|)
 //
-// which is exact for constant fields also where particles are on one side only, as at a wall or a free surface.
+// which is exact for constant fields also where particles are on one side only, as at a wall or a free surface. With
+// `linear` it is the value at x of the straight line, plane or space fitted with the same weights w_j = V_j W,
+//
+//   f(x) = sum_j w_j (1 - m . C^-1 (d_j - m)) f_j / sum_j w_j,   d_j = x_j - x,   m, C their mean and covariance
+//
+// exact for linear fields, so that it reaches the surface half a spacing beyond the last particles; where particles do
+// not span all directions it is the plain one.
 // V_j is the field `volume`, else mass / density, else spacing^dimensions. A gauge is the mean over a disc.
 #include <tbb/parallel_for.h>
 
@@ -20,6 +26,7 @@
 #include "kernel/particles/errors.hpp"
 #include "kernel/plugins/host.hpp"
 #include "shoal/smoothing_kernel.hpp"
+#include "shoal/vec.hpp"
 
 namespace shoal::kernel {
 namespace {
@@ -197,16 +204,59 @@ class Point final : public Probe {
   // Nothing where there are too few particles.
   std::vector<double> interpolate(const std::vector<Near>& near, const Place& at) const {
     std::vector<double> sums(of_.size(), 0.0);
+    const std::vector<double> weights = weights_of(near, at);
     double total = 0.0;
-    for (const Near& body : near)
-      for (std::size_t j = 0; j < body.particles.size(); ++j) {
-        const double weight = body.volumes[j] * w(*body.body, body.particles[j].position, at);
-        total += weight;
-        for (std::size_t k = 0; k < of_.size(); ++k) sums[k] += weight * body.values[k][j];
-      }
+    for (const double weight : weights) total += weight;
     if (!(total > 0.0 && total >= parameters_.support)) return {};
+    const auto fit = parameters_.linear ? fit_of(near, at, weights, total) : std::nullopt;
+    std::size_t n = 0;
+    for (const Near& body : near)
+      for (std::size_t j = 0; j < body.particles.size(); ++j, ++n) {
+        const double factor = fit ? fit->factor(body.particles[j].position, at) : 1.0;
+        for (std::size_t k = 0; k < of_.size(); ++k) sums[k] += weights[n] * factor * body.values[k][j];
+      }
     for (double& sum : sums) sum /= total;
     return sums;
+  }
+
+  std::vector<double> weights_of(const std::vector<Near>& near, const Place& at) const {
+    std::vector<double> weights;
+    for (const Near& body : near)
+      for (std::size_t j = 0; j < body.particles.size(); ++j)
+        weights.push_back(body.volumes[j] * w(*body.body, body.particles[j].position, at));
+    return weights;
+  }
+
+  // m and C^-1 m
+  struct LinearFit {
+    Vec<3> mean{}, slope{};
+    double factor(const Place& x, const Place& at) const { return 1.0 - dot(slope, offset(x, at) - mean); }
+  };
+
+  static Vec<3> offset(const Place& x, const Place& at) {
+    Vec<3> d{};
+    for (int a = 0; a < 3; ++a) d[a] = x[static_cast<std::size_t>(a)] - at[static_cast<std::size_t>(a)];
+    return d;
+  }
+
+  std::optional<LinearFit> fit_of(const std::vector<Near>& near, const Place& at,
+                                  const std::vector<double>& weights, double total) const {
+    LinearFit fit;
+    Mat<3> covariance{};
+    std::size_t n = 0;
+    for (const Near& body : near)
+      for (const ParticleImage& j : body.particles) fit.mean += weights[n++] / total * offset(j.position, at);
+    n = 0;
+    for (const Near& body : near)
+      for (const ParticleImage& j : body.particles) {
+        const Vec<3> d = offset(j.position, at) - fit.mean;
+        covariance += weights[n++] / total * outer(d, d);
+      }
+    const double scale = trace(covariance) / dimensions_;
+    if (dimensions_ == 2) covariance(2, 2) = scale;
+    if (!(determinant(covariance) > 1e-6 * scale * scale * scale)) return std::nullopt;
+    fit.slope = inverse(covariance) * fit.mean;
+    return fit;
   }
 
   double w(const BodyOfProbe& body, const Place& a, const Place& b) const {

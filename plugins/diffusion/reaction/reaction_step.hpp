@@ -65,7 +65,7 @@ struct ReactionStep : ParticleOperator<ReactionStep> {
     for (const auto& stimulus : reaction->stimuli) {
       if (!(stimulus->share(t, t + half) > 0.0)) continue;
       source.resize(n);
-      stimulus->add(dimensions(), n, x, t, t + half, source.data());
+      stimulus->add(dimensions(), spacing(), n, x, t, t + half, source.data());
     }
     reaction->integrator.advance(dimensions(), t, half, n, x, variables.at(begin).data(),
                                  source.empty() ? nullptr : source.data());

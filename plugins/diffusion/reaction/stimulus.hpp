@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // diffusion.stimulus: adds a constant rate to the first variable of a reaction, in a region and for a time, once or
-// again and again. A step that the stimulus begins or ends in gets the part of it that falls into the step.
+// again and again. A step that the stimulus begins or ends in gets the part of it that falls into the step; a particle
+// gets the part of its cell, a square or cube of one spacing, that lies in the box: so the volume that is stimulated does
+// not depend on how the box cuts the particles.
 #pragma once
 
 #include <algorithm>
@@ -59,8 +61,8 @@ struct Stimulus final : Material {
     return time / (t1 - t0);
   }
 
-  // Adds the mean rate from t0 to t1 at n points.
-  void add(int dimensions, std::uint64_t n, const double* position, double t0, double t1,
+  // Adds the mean rate from t0 to t1 at n particles `width` apart, in m.
+  void add(int dimensions, double width, std::uint64_t n, const double* position, double t0, double t1,
            double* source) const {
     const double strength = rate * share(t0, t1);
     std::vector<double> factor;
@@ -69,16 +71,23 @@ struct Stimulus final : Material {
       where->evaluate(dimensions, n, position, 0.5 * (t0 + t1), factor.data());
     }
     for (std::uint64_t i = 0; i < n; ++i)
-      if (inside(dimensions, position + i * static_cast<std::uint64_t>(dimensions)))
-        source[i] += strength * (factor.empty() ? 1.0 : factor[i]);
+      source[i] += strength *
+                   inside(dimensions, width, position + i * static_cast<std::uint64_t>(dimensions)) *
+                   (factor.empty() ? 1.0 : factor[i]);
   }
 
  private:
-  bool inside(int dimensions, const double* x) const {
-    for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a)
-      if ((lower.is_set() && x[a] < lower.value()[a]) || (upper.is_set() && x[a] > upper.value()[a]))
-        return false;
-    return true;
+  // The part of a particle's cell in the box.
+  double inside(int dimensions, double width, const double* x) const {
+    double part = 1.0;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a) {
+      if (!lower.is_set() && !upper.is_set()) continue;
+      const double low = lower.is_set() ? std::max(lower.value()[a], x[a] - 0.5 * width) : x[a] - 0.5 * width;
+      const double high =
+          upper.is_set() ? std::min(upper.value()[a], x[a] + 0.5 * width) : x[a] + 0.5 * width;
+      part *= std::max(0.0, high - low) / width;
+    }
+    return part;
   }
 };
 

@@ -27,8 +27,9 @@ constexpr double along = 0.17 * 0.62 / 0.79 / 1.4, across = 0.019 * 0.24 / 0.259
 
 class Slab {
  public:
-  Slab(double dx, const ReactionIntegrator& reaction) : dx_(dx), reaction_(reaction) {
-    for (std::size_t a = 0; a < 3; ++a) n_[a] = static_cast<std::size_t>(std::lround(size_mm[a] / dx)) + 1;
+  Slab(double dx, double dy, const ReactionIntegrator& reaction) : dx_{dx, dy, dy}, reaction_(reaction) {
+    for (std::size_t a = 0; a < 3; ++a)
+      n_[a] = static_cast<std::size_t>(std::lround(size_mm[a] / dx_[a])) + 1;
     total_ = n_[0] * n_[1] * n_[2];
     y_.resize(reaction.n_variables());
     for (std::size_t v = 0; v < y_.size(); ++v)
@@ -39,14 +40,16 @@ class Slab {
     middle_.resize(total_);
     for (std::size_t i = 0; i < n_[0]; ++i)
       for (std::size_t j = 0; j < n_[1]; ++j)
-        for (std::size_t k = 0; k < n_[2]; ++k) source_.push_back(stimulus * share(i) * share(j) * share(k));
+        for (std::size_t k = 0; k < n_[2]; ++k)
+          source_.push_back(stimulus * share(0, i) * share(1, j) * share(2, k));
   }
 
   void start(double half_step) { react(0.0, half_step); }
   // Strang splitting; the reaction's second half and the first of the next step are one.
   void step(double t, double dt) {  // ms
     before_ = y_[0];
-    const int parts = static_cast<int>(std::ceil(dt * 4.0 * (along + 2.0 * across) / (dx_ * dx_) / 1.6));
+    const int parts =
+        static_cast<int>(std::ceil(dt * 4.0 * (over_square(0) + over_square(1) + over_square(2)) / 1.6));
     for (int k = 0; k < parts; ++k) diffuse(dt / parts);
     react(t + 0.5 * dt, dt);
     for (std::size_t i = 0; i < total_; ++i)
@@ -54,14 +57,17 @@ class Slab {
         activation_[i] = t + 0.5 * dt + dt * (0.0 - before_[i]) / (y_[0][i] - before_[i]);
   }
   double activation(double x, double y, double z) const {
-    const auto node = [&](double s) { return static_cast<std::size_t>(std::lround(s / dx_)); };
-    return activation_[(node(x) * n_[1] + node(y)) * n_[2] + node(z)];
+    const auto node = [&](std::size_t a, double s) {
+      return static_cast<std::size_t>(std::lround(s / dx_[a]));
+    };
+    return activation_[(node(0, x) * n_[1] + node(1, y)) * n_[2] + node(2, z)];
   }
 
  private:
-  // Of the volume of node i that is stimulated, along one axis.
-  double share(std::size_t i) const {
-    const double beyond = static_cast<double>(i) * dx_ - stimulated_mm;
+  double over_square(std::size_t a) const { return (a == 0 ? along : across) / (dx_[a] * dx_[a]); }
+  // Of the volume of node i that is stimulated, along axis a.
+  double share(std::size_t a, std::size_t i) const {
+    const double beyond = static_cast<double>(i) * dx_[a] - stimulated_mm;
     return beyond > 1e-9 ? 0.0 : beyond > -1e-9 ? 0.5 : 1.0;
   }
   template <class Work>
@@ -94,7 +100,7 @@ class Slab {
   }
   void differences(const std::vector<double>& v) {
     const std::size_t stride[3] = {n_[1] * n_[2], n_[2], 1};
-    const double d[3] = {along / (dx_ * dx_), across / (dx_ * dx_), across / (dx_ * dx_)};
+    const double d[3] = {over_square(0), over_square(1), over_square(2)};
     in_planes([&](std::size_t begin, std::size_t end) {
       std::size_t at[3];
       for (at[0] = begin; at[0] < end; ++at[0])
@@ -112,7 +118,7 @@ class Slab {
     });
   }
 
-  double dx_;
+  std::array<double, 3> dx_;
   const ReactionIntegrator& reaction_;
   std::array<std::size_t, 3> n_{};
   std::size_t total_ = 0;
@@ -123,15 +129,16 @@ class Slab {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const double dx = argc > 1 ? std::atof(argv[1]) : 0.2, dt = argc > 2 ? std::atof(argv[2]) : 0.05;
+  const double dx = argc > 1 ? std::atof(argv[1]) : 0.2, dy = argc > 2 ? std::atof(argv[2]) : dx,
+               dt = argc > 3 ? std::atof(argv[3]) : 0.05;
   const TenTusscherPanfilov model;
   const ReactionIntegrator reaction(test::interface_of(model));
-  Slab slab(dx, reaction);
+  Slab slab(dx, dy, reaction);
   slab.start(0.5 * dt);
   for (int k = 0; slab.activation(20, 7, 3) < 0.0 && k * dt < 200.0; ++k) slab.step(k * dt, dt);
   const double points[9][3] = {{0, 0, 0}, {0, 7, 0},  {20, 0, 0}, {20, 7, 0},    {0, 0, 3},
                                {0, 7, 3}, {20, 0, 3}, {20, 7, 3}, {10, 3.5, 1.5}};
-  std::printf("# dx = %g mm\n", dx);
+  std::printf("# %g mm along the fibres, %g mm across, steps of %g ms\n", dx, dy, dt);
   for (int p = 0; p < 9; ++p)
     std::printf("P%d,%.4f\n", p + 1, slab.activation(points[p][0], points[p][1], points[p][2]));
 }
