@@ -121,9 +121,9 @@ class WeightsOfPairs : public RowOperator {
     // 2 max_i sum_j |l_ij| bounds all eigenvalues (Gershgorin), by a factor of 1.5 to 4 too high.
     stencil->spectral_radius = 2.0 * row_sum.result();
     if (moving) return;
-    double radius = spectral_radius(*this, *stencil);
-    if (stencil->limited) radius = std::max(radius, spectral_radius(*this, *stencil, true));
-    stencil->spectral_radius = std::min(stencil->spectral_radius, 1.1 * radius);
+    double radius = spectral_radius(StencilMatrix(*this, *stencil, false));
+    if (stencil->limited) radius = std::max(radius, spectral_radius(StencilMatrix(*this, *stencil, true)));
+    stencil->spectral_radius = std::min(stencil->spectral_radius, spectral_margin * radius);
   }
   void save(const shoal_stream& stream) const {
     check_host(stream.write(stream.context, &stencil->spectral_radius, sizeof(double)));

@@ -66,5 +66,8 @@ TEST_CASE("the longest stable steps") {
                  1.05) >= 1.0);
   CHECK(limit_of("solid.total_lagrangian, plate, disordered", disordered_plate,
                  "physics.0.solid.total_lagrangian.step_factor", 0.95, 1.05) >= 1.0);
-  CHECK(limit_of("diffusion rk2, disordered plate", heat, "physics.0.diffusion.diffusion.cfl", 0.9) >= 1.0);
+  // Modes that grow start from nothing: in a hundred steps they show.
+  const std::string long_heat = replaced(heat, "run: {end: 1}", "run: {end: 40}");
+  CHECK(limit_of("diffusion rk2, disordered plate", long_heat, "physics.0.diffusion.diffusion.cfl", 0.9) >=
+        1.0);
 }

@@ -76,17 +76,20 @@ struct Stimulus final : Material {
                    (factor.empty() ? 1.0 : factor[i]);
   }
 
+  // The part of a cell around x that lies between `low` and `high`, along one axis.
+  static double overlap(double x, double width, double low, double high) {
+    const double below = std::max(0.0, low - (x - 0.5 * width));
+    const double above = std::max(0.0, x + 0.5 * width - high);
+    return std::max(0.0, 1.0 - (below + above) / width);
+  }
+
  private:
   // The part of a particle's cell in the box.
   double inside(int dimensions, double width, const double* x) const {
     double part = 1.0;
-    for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a) {
-      if (!lower.is_set() && !upper.is_set()) continue;
-      const double low = lower.is_set() ? std::max(lower.value()[a], x[a] - 0.5 * width) : x[a] - 0.5 * width;
-      const double high =
-          upper.is_set() ? std::min(upper.value()[a], x[a] + 0.5 * width) : x[a] + 0.5 * width;
-      part *= std::max(0.0, high - low) / width;
-    }
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimensions); ++a)
+      part *= overlap(x[a], width, lower.is_set() ? lower.value()[a] : -HUGE_VAL,
+                      upper.is_set() ? upper.value()[a] : HUGE_VAL);
     return part;
   }
 };

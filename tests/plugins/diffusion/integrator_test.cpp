@@ -130,3 +130,23 @@ TEST_CASE("auto takes rk2 where the accuracy allows short steps only, rkl2 where
   others->ns = 1000 * 2 * 19 * measured::reaction_variable;
   CHECK(op.time_step(0) == doctest::Approx(0.32));
 }
+
+TEST_CASE("a wrong ratio of the measured costs makes a step of auto little dearer") {
+  for (const auto& [wrong, bound] : {std::pair{2.0, 0.08}, std::pair{4.0, 0.16}}) {
+    double worst = 0;
+    for (double length = 1.0; length < 31.0; length += 0.05)  // over the longest step of rk2
+      for (double other = 0.1; other < 1e4; other *= 1.25)
+        for (const double factor : {wrong, 1.0 / wrong}) {
+          const int stages = Legendre::stages(2.0 * length);
+          const StepCost believed(1.0, 30.0, 0, other);
+          StepCost real = believed;
+          real.rate *= factor;
+          const double super = real.rkl2(stages), plain = real.rk2() * length;
+          const bool takes_super = believed.rkl2(stages) < believed.rk2() * length;
+          worst = std::max(worst, (takes_super ? super : plain) / std::min(super, plain) - 1.0);
+        }
+    INFO(wrong);
+    CHECK(worst > 0.01);
+    CHECK(worst < bound);
+  }
+}
