@@ -18,6 +18,7 @@
 // Without f_i errors were five times as large. Where surfaces matter take the accurate scheme.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -120,6 +121,7 @@ class WeightsOfPairs : public RowOperator {
     if (!active_) return;
     // 2 max_i sum_j |l_ij| bounds all eigenvalues (Gershgorin), by a factor of 1.5 to 4 too high.
     stencil->spectral_radius = 2.0 * row_sum.result();
+    if (stencil->limited) stencil->limiter_rate = limiter_bound * largest_sum();
     if (moving) return;
     double radius = spectral_radius(StencilMatrix(*this, *stencil, false));
     if (stencil->limited) radius = std::max(radius, spectral_radius(StencilMatrix(*this, *stencil, true)));
@@ -127,9 +129,11 @@ class WeightsOfPairs : public RowOperator {
   }
   void save(const shoal_stream& stream) const {
     check_host(stream.write(stream.context, &stencil->spectral_radius, sizeof(double)));
+    check_host(stream.write(stream.context, &stencil->limiter_rate, sizeof(double)));
   }
   void load(const shoal_stream& stream) {
     check_host(stream.read(stream.context, &stencil->spectral_radius, sizeof(double)));
+    check_host(stream.read(stream.context, &stencil->limiter_rate, sizeof(double)));
   }
 
  protected:
@@ -223,6 +227,18 @@ class WeightsOfPairs : public RowOperator {
         dot(point.normal, own_tensor<D>(i) * point.normal) / std::max(dot(x, point.normal), 0.25 * spacing());
     const double q = 2.0 / capacity * share * per_length / (condition.a + condition.b * per_length);
     surface.push_back({static_cast<std::uint32_t>(i), j, relation, q, q * condition.a, 0.0, 0.0});
+  }
+
+  // Of the weights of a particle, and of what pulls it to given values at the surface.
+  double largest_sum() const {
+    std::vector<double> sums(n_particles());
+    for (std::size_t k = 0; k < n_relations(); ++k)
+      for (std::size_t i = 0; i < sums.size(); ++i)
+        for (std::uint32_t m = 0; m < neighbours(k).counts[i]; ++m)
+          sums[i] += stencil->weights[k][neighbours(k).offsets[i] + m];
+    for (const auto& chunk : stencil->surface)
+      for (const SurfaceWeight& w : chunk) sums[w.i] += w.per_value;
+    return sums.empty() ? 0.0 : *std::max_element(sums.begin(), sums.end());
   }
 
   Names names_;

@@ -49,6 +49,8 @@ struct SurfaceWeight {
   double more_per_data = 0, more_per_value = 0;  // as Stencil::more
 };
 
+inline constexpr double limiter_bound = 2.5;  // k over the sum of l (limiter.hpp)
+
 struct Stencil {
   std::vector<std::vector<SurfaceWeight>> surface;  // [chunk]
   std::vector<std::vector<double>> weights;         // [relation][entry of the list], 0 in the padding
@@ -57,6 +59,9 @@ struct Stencil {
   std::vector<std::shared_ptr<const Motion>> motions;  // of the bodies of the relations
   std::vector<std::uint64_t> seen;                     // their counts when the weights were computed
   bool limited = false;                                // whether there are `more`
+  double limiter_rate =
+      0;  // 1/s, of limited ones: the largest k of limiter.hpp; 1/k is the longest step of Euler's
+          // method that makes no new extremum
 
   std::vector<SurfaceWeight>& surface_of(const shoal_chunk& chunk) {
     if (chunk.number >= surface.size()) throw std::logic_error("more chunks of particles than expected");

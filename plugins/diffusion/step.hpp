@@ -9,6 +9,7 @@
 //          spacing. Where more than a hundred steps are made their errors add up to a; s follows from dt.
 //   auto   in each step the one whose step costs less for the time that it covers (cost.hpp); at the end of the run it
 //          says which, and why.
+// The monotone scheme with rk2 or auto: rk2 with dt <= 1 / k too (limiter.hpp), so that it is monotone in time as well.
 #pragma once
 
 #include <algorithm>
@@ -71,6 +72,7 @@ struct OuterStep : ParticleOperator<OuterStep> {
 
   double time_step(double) const {
     const double explicit_step = cfl * 2.0 / spectral_radius();
+    if (monotone()) return std::min(explicit_step, 1.0 / limiter_rate());
     if (integrator == Integrator::rk2) return explicit_step;
     // The first step is one of rk2: nothing is known of the error yet.
     double wanted = explicit_step;
@@ -88,9 +90,10 @@ struct OuterStep : ParticleOperator<OuterStep> {
   void begin() {
     const double lambda_dt = dt() * spectral_radius() / cfl;
     const int s = Legendre::stages(lambda_dt);
-    // rk2 knows nothing of its error: every tenth step measures it with rkl2 of three stages.
+    // In auto rk2 knows nothing of its error: every tenth step measures it with rkl2 of three stages.
     const bool pays_now = lambda_dt > 2.0 * (1.0 + 1e-9);
-    const bool super = integrator == Integrator::rkl2 || pays_now || step().number % 10 == 1;
+    const bool measures = integrator == Integrator::automatic && (pays_now || step().number % 10 == 1);
+    const bool super = integrator == Integrator::rkl2 || (measures && !monotone());
     stages->super = super;
     stages->number = super ? s : 2;
     stages->step = dt();
@@ -99,7 +102,9 @@ struct OuterStep : ParticleOperator<OuterStep> {
     done_.add(cost(), pays_now, super ? s : 2, lambda_dt);
   }
   std::string remark() const {
-    return integrator == Integrator::automatic && done_.steps > 0.0 ? what + ": " + done_.text(accuracy) : "";
+    if (integrator != Integrator::automatic || done_.steps == 0.0) return "";
+    if (monotone()) return what + ": rk2 in steps that make no new extrema; rkl2 has no proof of that";
+    return what + ": " + done_.text(accuracy);
   }
   void save(const shoal_stream& stream) const {
     const double state[6] = {stages->step,      stages->measured_step, stages->squares,
@@ -120,6 +125,13 @@ struct OuterStep : ParticleOperator<OuterStep> {
   }
 
  private:
+  // Whether steps must be monotone: a choice of rkl2 is the user's.
+  bool monotone() const { return integrator != Integrator::rkl2 && limiter_rate() > 0.0; }
+  double limiter_rate() const {
+    double largest = 0;
+    for (const auto& stencil : stencils) largest = std::max(largest, stencil->limiter_rate);
+    return largest;
+  }
   double spectral_radius() const {
     double largest = 0;
     for (const auto& stencil : stencils) largest = std::max(largest, stencil->spectral_radius);

@@ -150,3 +150,31 @@ TEST_CASE("a wrong ratio of the measured costs makes a step of auto little deare
     CHECK(worst < bound);
   }
 }
+
+TEST_CASE("rk2 has two stages in all steps; the monotone scheme takes steps that make no new extrema") {
+  const auto stencil = std::make_shared<Stencil>();
+  stencil->spectral_radius = 100.0;
+  OuterStep op;
+  op.stencils = {stencil};
+  op.stages = std::make_shared<Stages>();
+  op.integrator = Integrator::rk2;
+  const auto stages_of = [&](std::uint64_t number) {
+    shoal_step step{};
+    step.size = sizeof step;
+    step.dimensions = 2;
+    step.number = number;
+    step.dt = step.parent_dt = 0.01;
+    op.set_step(step);
+    op.begin();
+    return op.stages->number;
+  };
+  for (const std::uint64_t number : {1U, 2U, 11U}) CHECK(stages_of(number) == 2);
+  op.integrator = Integrator::automatic;
+  CHECK(stages_of(1) == 3);
+  CHECK(stages_of(2) == 2);
+  stencil->limiter_rate = 125.0;
+  CHECK(op.time_step(0) == doctest::Approx(0.008));
+  CHECK(stages_of(1) == 2);
+  op.integrator = Integrator::rkl2;
+  CHECK(op.time_step(0) == doctest::Approx(0.02));
+}

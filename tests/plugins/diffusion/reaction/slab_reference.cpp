@@ -4,8 +4,8 @@
 // The slab of Niederer et al. (2011) by finite differences on its nodes, nothing of which the particles share but the
 // cell, whose rates are compared with the printed equations elsewhere. Second differences mirrored at the surfaces, Heun's
 // method for them, Strang splitting. Prints the activation times (V = 0) of P1 ... P9 in ms:
-//     test_slab_reference 0.1
-// cases/reference/diffusion/niederer_finite_differences.csv holds what 0.1 and 0.05 gave and their extrapolation.
+//     test_slab_reference 0.25 0.1 0.0125      (spacing along the fibres and across, mm; step, ms)
+// cases/reference/diffusion/niederer_finite_differences.csv holds what it gave and the limit.
 #include <array>
 #include <cmath>
 #include <cstdio>
