@@ -48,16 +48,17 @@ struct DiffusivePressureForce : PairOperator<DiffusivePressureForce<Kind, Correc
 
   auto pair(const auto& p) const {
     const auto weight = p.j(volume) * p.dW_over_r();
+    const auto p_j = p.j(pressure);
     const auto force = [&] {
       if constexpr (Corrected)
-        return weight * (p.i(pressure) * (p.j(matrix) * p.r_ij()) + p.j(pressure) * (p.i(matrix) * p.r_ij()));
+        return weight * (p.i(pressure) * (p.j(matrix) * p.r_ij()) + p_j * (p.i(matrix) * p.r_ij()));
       else
-        return (weight * (p.i(pressure) + p.j(pressure))) * p.r_ij();
+        return (weight * (p.i(pressure) + p_j)) * p.r_ij();
     }();
     if constexpr (Kind == Diffusion::none) {
       return force;
     } else {
-      auto jump = p.i(pressure) - p.j(pressure);
+      auto jump = p.i(pressure) - p_j;
       if constexpr (Kind == Diffusion::antuono)
         jump += (0.5 * reference_density) * dot(p.i(last_acceleration) + p.j(last_acceleration), p.r_ij());
       if constexpr (Kind == Diffusion::fourtakas)

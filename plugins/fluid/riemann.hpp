@@ -51,16 +51,16 @@ struct PressureForceOf : PairOperator<PressureForceOf<Corrected>> {
 
   auto pair(const auto& p) const {
     const auto weight = p.j(volume) * p.dW_over_r();
-    const auto jump = p.i(pressure) - p.j(pressure);
+    const auto p_j = p.j(pressure);
+    const auto jump = p.i(pressure) - p_j;
     const auto smooth =
         (-0.5 * reference_density) * dot(p.i(last_acceleration) + p.j(last_acceleration), p.r_ij());
     const auto dissipation = weight * p.r() * (jump - minmod(jump, smooth));
     if constexpr (Corrected)
-      return sums(
-          weight * (p.i(pressure) * (p.j(matrix) * p.r_ij()) + p.j(pressure) * (p.i(matrix) * p.r_ij())),
-          dissipation);
+      return sums(weight * (p.i(pressure) * (p.j(matrix) * p.r_ij()) + p_j * (p.i(matrix) * p.r_ij())),
+                  dissipation);
     else
-      return sums((weight * (p.i(pressure) + p.j(pressure))) * p.r_ij(), dissipation);
+      return sums((weight * (p.i(pressure) + p_j)) * p.r_ij(), dissipation);
   }
   void particle(auto i, auto force, auto dissipation) const {
     pressure_acceleration[i] -= ((Corrected ? 1.0 : gradient_scale) / density[i]) * force;

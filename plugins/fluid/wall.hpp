@@ -124,7 +124,8 @@ struct WallForceOf : PairOperator<WallForceOf<Corrected>> {
 
   auto pair(const auto& p) const {
     const auto weight = p.j(volume) * p.dW_over_r();
-    const auto p_w = wall_pressure(reference_density, p.j(pressure), p.j(acceleration), p.r_ij());
+    const auto p_j = p.j(pressure);
+    const auto p_w = wall_pressure(reference_density, p_j, p.j(acceleration), p.r_ij());
     const auto n = towards(-p.r_ij(), p.i(wall_normal));
     const auto v = p.j(velocity) - p.i(velocity);
     const auto approach = max(0.0, -2.0 * dot(v, n));
@@ -134,9 +135,9 @@ struct WallForceOf : PairOperator<WallForceOf<Corrected>> {
                        (p.r() + 0.01 * p.h());
     const auto smooth = weight * gradient_scale * (impact * p.r() * n - shear * v);
     if constexpr (Corrected)
-      return smooth - (weight * (p.j(pressure) + p_w)) * (p.j(matrix) * p.r_ij());
+      return smooth - (weight * (p_j + p_w)) * (p.j(matrix) * p.r_ij());
     else
-      return smooth - (weight * gradient_scale * (p.j(pressure) + p_w)) * p.r_ij();
+      return smooth - (weight * gradient_scale * (p_j + p_w)) * p.r_ij();
   }
   void particle(auto i, auto sum) const { force[i] = volume[i] * sum; }
 };
