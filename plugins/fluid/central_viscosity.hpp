@@ -8,57 +8,18 @@
 // in viscosity.hpp. Evaluated once in an advection step; stable for dt <= 0.125 h^2 / nu of that step.
 #pragma once
 
-#include "shoal/pair_operator.hpp"
-
 #include "viscosity.hpp"
 
 namespace shoal::fluid {
 
-struct CentralViscousForce : PairOperator<CentralViscousForce> {
-  In<Vector> velocity{"velocity"};
-  In<Scalar> volume{"volume"};
-  In<Scalar> density{"density", own_only};
-  Accumulate<Vector> acceleration{"acceleration"};
-
-  double viscosity = 0;          // Pa s
-  double reference_density = 0;  // kg/m3
-  double gradient_scale = 1;     // 1 / slope of lattice_sums()
-
-  auto pair(const auto& p) const {
-    const auto along = dot(p.i(velocity) - p.j(velocity), p.r_ij());
-    return (p.j(volume) * p.dW_over_r() * along / (p.r() * p.r() + 0.01 * p.h() * p.h())) * p.r_ij();
-  }
-  void particle(auto i, auto sum) const {
-    acceleration[i] += (2.0 * (i.dimensions + 2) * gradient_scale * viscosity / density[i]) * sum;
-  }
-  double time_step(double h) const { return 0.125 * h * h * reference_density / viscosity; }
-};
-
-// The share of the no-slip walls.
-struct WallCentralViscousForce : PairOperator<WallCentralViscousForce> {
-  static constexpr bool skips_lonely = true;
-
-  In<Vector> velocity{"velocity", own_only};
-  In<Scalar> density{"density", own_only};
-  In<Vector> wall_velocity{"velocity", neighbours_only};
-  In<Vector> wall_normal{"normal", neighbours_only};
-  In<Scalar> wall_distance{"signed_distance", neighbours_only};
-  In<Scalar> wall_volume{"volume", neighbours_only};
-  Accumulate<Vector> acceleration{"acceleration"};
-
-  double viscosity = 0;       // Pa s
-  double gradient_scale = 1;  // 1 / slope of lattice_sums()
-
-  auto pair(const auto& p) const {
-    const auto across = abs(dot(p.j(wall_normal), p.r_ij()));
-    const auto along = dot(p.i(velocity) - p.j(wall_velocity), p.r_ij());
-    return (p.j(wall_volume) * p.dW_over_r() * no_slip_factor(across, p.j(wall_distance)) * along /
-            (p.r() * p.r() + 0.01 * p.h() * p.h())) *
-           p.r_ij();
-  }
-  void particle(auto i, auto sum) const {
-    acceleration[i] += (2.0 * (i.dimensions + 2) * gradient_scale * viscosity / density[i]) * sum;
+struct CentralForm {
+  static double factor(int dimensions) { return 2.0 * (dimensions + 2); }
+  static auto exchange(const auto& p, const auto& v) {
+    return (p.dW_over_r() * dot(v, p.r_ij()) / (p.r() * p.r() + 0.01 * p.h() * p.h())) * p.r_ij();
   }
 };
+
+using CentralViscousForce = ViscousForceOf<CentralForm>;
+using WallCentralViscousForce = WallViscousForceOf<CentralForm>;
 
 }  // namespace shoal::fluid

@@ -23,7 +23,14 @@ auto no_slip_factor(const R& across, const S& signed_distance) {
   return min(4.0, across / max(0.25 * across + 1e-300, across - depth));
 }
 
-struct ViscousForce : PairOperator<ViscousForce> {
+// What a pair exchanges for the difference of velocities v, but for the volume of j; the sum counts `factor` times.
+struct MorrisForm {
+  static double factor(int) { return 2.0; }
+  static auto exchange(const auto& p, const auto& v) { return (p.dW() / (p.r() + 0.01 * p.h())) * v; }
+};
+
+template <class Form>
+struct ViscousForceOf : PairOperator<ViscousForceOf<Form>> {
   In<Vector> velocity{"velocity"};
   In<Scalar> volume{"volume"};
   In<Scalar> density{"density", own_only};
@@ -33,17 +40,18 @@ struct ViscousForce : PairOperator<ViscousForce> {
   double reference_density = 0;  // kg/m3
   double gradient_scale = 1;     // 1 / slope of lattice_sums()
 
-  auto pair(const auto& p) const {
-    return (p.j(volume) * p.dW() / (p.r() + 0.01 * p.h())) * (p.i(velocity) - p.j(velocity));
-  }
+  auto pair(const auto& p) const { return p.j(volume) * Form::exchange(p, p.i(velocity) - p.j(velocity)); }
   void particle(auto i, auto sum) const {
-    acceleration[i] += (2.0 * gradient_scale * viscosity / density[i]) * sum;
+    acceleration[i] += (Form::factor(i.dimensions) * gradient_scale * viscosity / density[i]) * sum;
   }
   double time_step(double h) const { return 0.125 * h * h * reference_density / viscosity; }
 };
 
+using ViscousForce = ViscousForceOf<MorrisForm>;
+
 // The share of the no-slip walls.
-struct WallViscousForce : PairOperator<WallViscousForce> {
+template <class Form>
+struct WallViscousForceOf : PairOperator<WallViscousForceOf<Form>> {
   static constexpr bool skips_lonely = true;
 
   In<Vector> velocity{"velocity", own_only};
@@ -59,12 +67,14 @@ struct WallViscousForce : PairOperator<WallViscousForce> {
 
   auto pair(const auto& p) const {
     const auto across = abs(dot(p.j(wall_normal), p.r_ij()));
-    return (p.j(wall_volume) * p.dW() / (p.r() + 0.01 * p.h()) * no_slip_factor(across, p.j(wall_distance))) *
-           (p.i(velocity) - p.j(wall_velocity));
+    return (p.j(wall_volume) * no_slip_factor(across, p.j(wall_distance))) *
+           Form::exchange(p, p.i(velocity) - p.j(wall_velocity));
   }
   void particle(auto i, auto sum) const {
-    acceleration[i] += (2.0 * gradient_scale * viscosity / density[i]) * sum;
+    acceleration[i] += (Form::factor(i.dimensions) * gradient_scale * viscosity / density[i]) * sum;
   }
 };
+
+using WallViscousForce = WallViscousForceOf<MorrisForm>;
 
 }  // namespace shoal::fluid

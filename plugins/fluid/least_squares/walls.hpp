@@ -233,8 +233,9 @@ auto continuation(const P& p, const Row& row, std::size_t n, int first, const Of
   return weight * s.weight;
 }
 
-template <class Of>
-struct WallVelocity : PairOperator<WallVelocity<Of>> {
+// What the continuations of velocities share.
+template <class Derived, class Of>
+struct ContinuedVelocity : PairOperator<Derived> {
   template <int D>
   using Kernel = Weight<D>;
 
@@ -249,46 +250,38 @@ struct WallVelocity : PairOperator<WallVelocity<Of>> {
   double since_midpoint = 0;  // s
 
   void begin() { since_midpoint = Of::time(*course) * course->dt; }
-  auto pair(const auto& p) const {
+
+ protected:
+  // The velocity of j beyond that of the wall, and its weight in the continuation without the 1.
+  auto beyond_wall(const auto& p) const {
+    return p.j(of_fluid) - (p.i(wall_velocity) + since_midpoint * p.i(wall_acceleration));
+  }
+  auto weight(const auto& p) const {
     const auto& e = p.i(row);
-    const auto v_w = p.i(wall_velocity) + since_midpoint * p.i(wall_acceleration);
-    return continuation(p, e, e.size(), 1, p.i(offset)) * (p.j(of_fluid) - v_w);
+    return continuation(p, e, e.size(), 1, p.i(offset));
   }
-  void particle(auto i, auto sum) const {
-    continued[i] = wall_velocity[i] + since_midpoint * wall_acceleration[i] + sum;
-  }
+  auto of_wall(auto i) const { return wall_velocity[i] + since_midpoint * wall_acceleration[i]; }
 };
 
 template <class Of>
-struct FreeSlipWallVelocity : PairOperator<FreeSlipWallVelocity<Of>> {
-  template <int D>
-  using Kernel = Weight<D>;
+struct WallVelocity : ContinuedVelocity<WallVelocity<Of>, Of> {
+  auto pair(const auto& p) const { return this->weight(p) * this->beyond_wall(p); }
+  void particle(auto i, auto sum) const { this->continued[i] = this->of_wall(i) + sum; }
+};
 
-  In<Vector> offset{"surface_offset", unit("m"), doc(offset_doc), derived, own_only};
+template <class Of>
+struct FreeSlipWallVelocity : ContinuedVelocity<FreeSlipWallVelocity<Of>, Of> {
   In<Vector> normal{"normal", own_only};
-  In<VelocityRow> row{"wall_velocity_row", unit("1"), doc(velocity_row_doc), derived, own_only};
   In<PressureRow> slope_row{"wall_pressure_row", unit("1"), doc(pressure_row_doc), derived, own_only};
-  In<Vector> wall_velocity{"surface_velocity", unit("m/s"), doc(surface_velocity_doc), own_only};
-  In<Vector> wall_acceleration{"surface_acceleration", unit("m/s2"), doc(surface_acceleration_doc), own_only};
-  In<Vector> of_fluid{Of::name, unit(Of::unit_text), doc(Of::doc_text), derived, neighbours_only};
-  Out<Vector> continued{Of::name, unit(Of::unit_text), doc(Of::doc_text), derived};
 
-  CoursePointer course;
-  double since_midpoint = 0;  // s
-
-  void begin() { since_midpoint = Of::time(*course) * course->dt; }
   auto pair(const auto& p) const {
-    const auto& e = p.i(row);
     const auto& f = p.i(slope_row);
-    const auto v = p.j(of_fluid);
-    const auto v_w = p.i(wall_velocity) + since_midpoint * p.i(wall_acceleration);
-    return sums(continuation(p, e, e.size(), 1, p.i(offset)) * dot(p.i(normal), v - v_w),
-                continuation(p, f, f.size() - 1, 0, p.i(offset)) * v);
+    return sums(this->weight(p) * dot(p.i(normal), this->beyond_wall(p)),
+                continuation(p, f, f.size() - 1, 0, p.i(this->offset)) * p.j(this->of_fluid));
   }
   void particle(auto i, double across, auto along) const {
     const auto n = normal[i];
-    const auto v_w = wall_velocity[i] + since_midpoint * wall_acceleration[i];
-    continued[i] = along + (dot(n, v_w - along) + across) * n;
+    this->continued[i] = along + (dot(n, this->of_wall(i) - along) + across) * n;
   }
 };
 

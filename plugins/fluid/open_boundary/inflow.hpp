@@ -35,22 +35,29 @@ struct FillZone : ParticleOperator<FillZone> {
   }
 };
 
-struct Inflow : ParticleOperator<Inflow> {
-  InOut<Vector> position{"position"};
-  In<Scalar> mass{"mass"};
+// What sees particles cross the plane: Derived::look<D> says which leave and join.
+template <class Derived>
+struct Crossing : ParticleOperator<Derived> {
   InOut<Integer> open_boundary{"open_boundary", unit("1"), doc(open_boundary_doc)};
+  In<Scalar> mass{"mass"};
 
   ZonePointer zone;
-  MassPointer entered;
+  MassPointer crossed;
 
-  void exchange(Exchange& exchange) { dimensions() == 2 ? look<2>(exchange) : look<3>(exchange); }
+  void exchange(Exchange& exchange) {
+    Derived& derived = static_cast<Derived&>(*this);
+    this->dimensions() == 2 ? derived.template look<2>(exchange) : derived.template look<3>(exchange);
+  }
+  void save(const shoal_stream& stream) const { keep(stream, *crossed); }
+  void load(const shoal_stream& stream) { restore(stream, *crossed); }
+};
+
+struct Inflow : Crossing<Inflow> {
+  InOut<Vector> position{"position"};
+
   void fill(std::uint64_t begin, std::uint64_t end) {
     dimensions() == 2 ? set_back<2>(begin, end) : set_back<3>(begin, end);
   }
-  void save(const shoal_stream& stream) const { keep(stream, *entered); }
-  void load(const shoal_stream& stream) { restore(stream, *entered); }
-
- private:
   template <int D>
   void look(Exchange& exchange) {
     for (std::uint64_t k = 0; k < n_particles(); ++k) {
@@ -58,15 +65,17 @@ struct Inflow : ParticleOperator<Inflow> {
       const double s = zone->distance(position[i]);
       if (open_boundary[i] == zone->name && s >= 0.0) {
         open_boundary[i] = 0;
-        *entered += mass[i];
+        *crossed += mass[i];
         exchange.join(k);
       } else if (s < -zone->length && s > -2.0 * zone->length && zone->bounds(position[i])) {
         // Driven out by the fluid
-        if (open_boundary[i] == 0) *entered -= mass[i];
+        if (open_boundary[i] == 0) *crossed -= mass[i];
         exchange.leave(k);
       }
     }
   }
+
+ private:
   template <int D>
   void set_back(std::uint64_t begin, std::uint64_t end) {
     for (std::uint64_t k = begin; k < end; ++k) {

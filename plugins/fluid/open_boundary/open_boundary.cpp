@@ -91,7 +91,7 @@ void InflowPhysics::build(const Builder& b) {
     const auto in_zone = [&](auto& op) {
       op.zone = where;
       if constexpr (requires { op.equation_of_state; }) op.equation_of_state = eos;
-      if constexpr (requires { op.entered; }) op.entered = mass;
+      if constexpr (requires { op.crossed; }) op.crossed = mass;
       if constexpr (requires { op.profile; }) op.profile = velocity;
     };
     b.attach<FillZone>("fluid.inflow.fill", at_initial, b.target(body), in_zone);
@@ -120,7 +120,7 @@ void OutflowPhysics::build(const Builder& b) {
     const auto in_zone = [&](auto& op) {
       op.zone = where;
       if constexpr (requires { op.equation_of_state; }) op.equation_of_state = eos;
-      if constexpr (requires { op.left; }) op.left = mass;
+      if constexpr (requires { op.crossed; }) op.crossed = mass;
       if constexpr (requires { op.impedance; }) op.impedance = impedance;
       if constexpr (requires { op.boundary_pressure; }) op.boundary_pressure = pressure;
     };

@@ -14,19 +14,9 @@
 
 namespace shoal::fluid {
 
-struct Outflow : ParticleOperator<Outflow> {
+struct Outflow : Crossing<Outflow> {
   In<Vector> position{"position"};
-  In<Scalar> mass{"mass"};
-  InOut<Integer> open_boundary{"open_boundary", unit("1"), doc(open_boundary_doc)};
 
-  ZonePointer zone;
-  MassPointer left;
-
-  void exchange(Exchange& exchange) { dimensions() == 2 ? look<2>(exchange) : look<3>(exchange); }
-  void save(const shoal_stream& stream) const { keep(stream, *left); }
-  void load(const shoal_stream& stream) { restore(stream, *left); }
-
- private:
   template <int D>
   void look(Exchange& exchange) {
     for (std::uint64_t k = 0; k < n_particles(); ++k) {
@@ -36,10 +26,10 @@ struct Outflow : ParticleOperator<Outflow> {
       if (!zone->bounds(position[i])) continue;
       if (open_boundary[i] == 0) {
         open_boundary[i] = zone->name;
-        *left += mass[i];
+        *crossed += mass[i];
       } else if (open_boundary[i] == zone->name && s >= 0.0) {
         open_boundary[i] = 0;
-        *left -= mass[i];
+        *crossed -= mass[i];
       }
       if (s < -zone->length) exchange.leave(k);
     }

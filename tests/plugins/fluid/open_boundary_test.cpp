@@ -232,7 +232,7 @@ TEST_CASE("who joins and who leaves at an inlet") {
   }
   Inflow op;
   op.zone = zone;
-  op.entered = std::make_shared<double>(0.0);
+  op.crossed = std::make_shared<double>(0.0);
   run(op, body);
   Exchange exchange;
   op.exchange(exchange);
@@ -242,7 +242,7 @@ TEST_CASE("who joins and who leaves at an inlet") {
   REQUIRE(driven_out.size() > 5);
   CHECK(std::vector<std::uint64_t>(asked.sources, asked.sources + asked.n_joining) == crossed);
   CHECK(std::vector<std::uint64_t>(asked.leaving, asked.leaving + asked.n_leaving) == driven_out);
-  CHECK(*op.entered == doctest::Approx(mass));
+  CHECK(*op.crossed == doctest::Approx(mass));
   for (const std::uint64_t i : crossed) CHECK(name_of(body, i) == 0);
   // As if these were the copies
   const auto before = body["position"];
@@ -275,7 +275,7 @@ TEST_CASE("who leaves at an outlet, and what has left") {
   }
   Outflow op;
   op.zone = zone;
-  op.left = std::make_shared<double>(0.0);
+  op.crossed = std::make_shared<double>(0.0);
   run(op, body);
   Exchange exchange;
   op.exchange(exchange);
@@ -284,6 +284,6 @@ TEST_CASE("who leaves at an outlet, and what has left") {
   REQUIRE(gone.size() > 5);
   CHECK(std::vector<std::uint64_t>(asked.leaving, asked.leaving + asked.n_leaving) == gone);
   CHECK(asked.n_joining == 0);
-  CHECK(*op.left == doctest::Approx(left));
+  CHECK(*op.crossed == doctest::Approx(left));
   for (std::size_t i = 0; i < body.size(); ++i) CHECK(name_of(body, i) == names[i]);
 }
