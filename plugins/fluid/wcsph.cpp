@@ -201,6 +201,8 @@ struct FluidBody {
                                                [&](auto& op) {
                                                  op.reference_density = density;
                                                  op.gradient_scale = 1.0 / lattice.slope;
+                                                 if (physics.free_surface)
+                                                   op.touching = 0.25 * itself().spacing;
                                                });
     b.attach<Kick>("fluid.kick", at_kick, itself());
     const auto riemann = [&](auto& op) {
@@ -244,6 +246,7 @@ struct FluidBody {
             op.viscosity = sticks ? viscosity : 0.0;
             op.limiter = physics.dissipation_limiter;
             op.gradient_scale = 1.0 / lattice.slope;
+            if (physics.free_surface) op.touching = 0.25 * itself().spacing;
           },
           SHOAL_OPERATOR_ON_DEMAND);
     }

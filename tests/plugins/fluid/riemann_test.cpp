@@ -221,6 +221,42 @@ TEST_CASE("a wall does not pull") {
   CHECK(drop["pressure_acceleration"][1] > 0.0);
 }
 
+TEST_CASE("a wall does not pull a particle in tension that touches it, where there is a free surface") {
+  const double dx = 0.05;
+  Body wall(2, lattice(2, dx, {-0.3, -0.3}, {0.3, 0.0}));
+  wall.set("volume", dx * dx);
+  wall.set_each("normal", 2, [](auto, auto a) { return a == 1 ? 1.0 : 0.0; });
+  wall.set_each("signed_distance", 1, [&](std::size_t i, auto) { return wall["position"][2 * i + 1]; });
+  wall.set_each("velocity", 2, [](auto, auto) { return 0.0; });
+  for (const double height : {0.2 * dx, 0.3 * dx})
+    for (const bool free_surface : {true, false}) {
+      CAPTURE(height);
+      CAPTURE(free_surface);
+      Body drop(2, {0.0, height});
+      drop.set("density", rho0);
+      drop.set("volume", dx * dx);
+      drop.set("pressure", -1000.0);
+      drop.set_each("velocity", 2, [](auto, auto) { return 0.0; });
+      drop.set_each("acceleration", 2, [](auto, auto) { return 0.0; });
+      WallPressureForce op;
+      op.reference_density = rho0;
+      WallForce force;
+      force.reference_density = rho0;
+      force.sound_speed = c;
+      if (free_surface) op.touching = force.touching = 0.25 * dx;
+      testing::run(op, drop, {&wall}, {.smoothing_length = 1.3 * dx});
+      testing::run(force, wall, {&drop}, {.smoothing_length = 1.3 * dx});
+      const double pull = drop["pressure_acceleration"][1];
+      if (free_surface && height < 0.25 * dx)
+        CHECK(pull == 0.0);
+      else
+        CHECK(pull < -1.0);
+      double on_wall = 0;
+      for (std::size_t j = 0; j < wall.size(); ++j) on_wall += wall["force"][2 * j + 1];
+      CHECK(on_wall == doctest::Approx(-rho0 * dx * dx * pull));
+    }
+}
+
 TEST_CASE("the force on a wall is the opposite of what the wall does to the fluid") {
   Corner corner;
   std::mt19937_64 random(3);
