@@ -87,7 +87,6 @@ TEST_CASE("viscosity is in the plan of a viscous case only") {
   write("dam.yaml", dam(""));
   const std::string inviscid = plan({}), viscous = plan({"viscosity=1"});
   CHECK_FALSE(contains(inviscid, "viscous"));
-  CHECK_FALSE(contains(inviscid, "signed_distance"));  // a field that only no-slip walls are asked for
   CHECK(contains(viscous, "fluid.viscous_force  on water with water"));
   CHECK(contains(viscous, "fluid.viscous_force.walls  on water with tank"));
   CHECK(contains(viscous, "signed_distance"));
