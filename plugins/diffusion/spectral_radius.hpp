@@ -29,35 +29,46 @@ template <class Op>
 class StencilMatrix {
  public:
   StencilMatrix(const Op& op, const Stencil& stencil, bool with_more)
-      : list_(op.neighbours(0)), stencil_(stencil), with_more_(with_more), diagonal_(op.n_particles()) {
+      : list_(op.neighbours(0)),
+        weights_(stencil.weights[0].data()),
+        more_(with_more ? stencil.more[0].data() : nullptr),
+        diagonal_(op.n_particles()),
+        size_(diagonal_.size()) {
     for (std::size_t k = 0; k < op.n_relations(); ++k)
       for (std::size_t i = 0; i < diagonal_.size(); ++i)
-        for (std::uint32_t m = 0; m < op.neighbours(k).counts[i]; ++m)
-          diagonal_[i] += weight(k, op.neighbours(k).offsets[i] + m);
+        for (std::uint32_t m = 0; m < op.neighbours(k).counts[i]; ++m) {
+          const std::uint64_t entry = op.neighbours(k).offsets[i] + m;
+          diagonal_[i] += stencil.weights[k][entry] + (with_more ? stencil.more[k][entry] : 0.0);
+          if (k == 0) size_ = std::max<std::size_t>(size_, list_.indices[entry] + 1);
+        }
     for (const auto& chunk : stencil.surface)
       for (const SurfaceWeight& w : chunk)
         diagonal_[w.i] += w.per_value + (with_more ? w.more_per_value : 0.0);
   }
-  std::size_t size() const { return diagonal_.size(); }
+  // Of vectors: the images come last, and stay zero.
+  std::size_t size() const { return size_; }
+  std::size_t rows() const { return diagonal_.size(); }
   // y = -L c, whose large eigenvalues are positive
   void apply(const std::vector<double>& c, std::vector<double>& y) const {
-    for (std::size_t i = 0; i < diagonal_.size(); ++i) {
-      double sum = diagonal_[i] * c[i];
-      for (std::uint64_t entry = list_.offsets[i]; entry < list_.offsets[i] + list_.counts[i]; ++entry)
-        if (list_.indices[entry] < diagonal_.size()) sum -= weight(0, entry) * c[list_.indices[entry]];
-      y[i] = sum;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      const std::uint32_t* row = list_.indices + list_.offsets[i];
+      const double* weight = weights_ + list_.offsets[i];
+      Pack sum(0.0);
+      for (std::uint32_t m = 0; m < list_.counts[i]; m += lanes) {
+        const Pack l = more_ == nullptr ? Pack::load(weight + m)
+                                        : Pack::load(weight + m) + Pack::load(more_ + list_.offsets[i] + m);
+        sum += l * gather<1, 0>(c.data(), IndexPack::load(row + m));
+      }
+      y[i] = diagonal_[i] * c[i] - horizontal_sum(sum);
     }
   }
 
  private:
-  double weight(std::size_t k, std::uint64_t entry) const {
-    return stencil_.weights[k][entry] + (with_more_ ? stencil_.more[k][entry] : 0.0);
-  }
-
   const shoal_neighbours& list_;
-  const Stencil& stencil_;
-  bool with_more_;
+  const double* weights_;
+  const double* more_;  // or null
   std::vector<double> diagonal_;
+  std::size_t size_;
 };
 
 namespace impl {
@@ -111,9 +122,9 @@ template <class Matrix>
 double spectral_radius(const Matrix& matrix) {
   std::vector<double> c(matrix.size()), next(matrix.size());
   std::uint64_t random = 0x9e3779b97f4a7c15u;
-  for (double& value : c) {
+  for (std::size_t i = 0; i < matrix.rows(); ++i) {
     random = random * 6364136223846793005u + 1442695040888963407u;
-    value = static_cast<double>(random >> 11) / 9007199254740992.0 - 0.5;
+    c[i] = static_cast<double>(random >> 11) / 9007199254740992.0 - 0.5;
   }
   double radius = impl::power_iterations(matrix, 4, c, next);
   double last = 0;
