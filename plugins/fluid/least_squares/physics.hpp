@@ -41,7 +41,10 @@ struct LeastSquares final : Physics {
       example("2.5*dx/L")};
   Param<double> advection_cfl{"advection_cfl", "1", "Advection step over h / |v|.", positive,
                               default_to(0.25)};
-  Param<double> acoustic_cfl{"acoustic_cfl", "1", "Acoustic step over h / c.", positive, default_to(0.6)};
+  Param<double> acoustic_cfl{
+      "acoustic_cfl", "1",
+      "Largest acoustic step over h / c. It is shorter where the stiffest fit asks for it.", positive,
+      default_to(0.6)};
   Param<double> viscous_number{"viscous_number", "1",
                                "Largest advection step over h^2 / nu, for accuracy: it is stable beyond.",
                                positive, default_to(1.0)};
