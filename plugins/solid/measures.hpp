@@ -68,7 +68,7 @@ struct CauchyStress : ParticleOperator<CauchyStress> {
 // What averaging the volume ratio (volume_averaging.hpp) changes in both.
 struct AveragedCauchyStress : ParticleOperator<AveragedCauchyStress> {
   In<Scalar> correction{"current_pressure_correction", unit("Pa"),
-                        doc("Pressure of the volume ratio less its mean.")};
+                        doc("Pressure of the volume ratio less that of the grid.")};
   InOut<Matrix> sigma{"cauchy_stress", unit("Pa"), doc("Cauchy stress.")};
   InOut<Scalar> out_of_plane{"out_of_plane_stress", unit("Pa"),
                              doc("Cauchy stress across the plane; 0 in 3D.")};
@@ -130,21 +130,6 @@ struct StrainEnergy : ParticleOperator<StrainEnergy> {
     block.time = time();
     block.energy = energy.data() + begin;
     check_host(structure->law.api->stress(structure->law.self, &block));
-  }
-};
-
-// U(Jm) - U(J) is the integral of -p, here by Simpson's rule: the two are near one another.
-struct AveragedStrainEnergy : ParticleOperator<AveragedStrainEnergy> {
-  In<Scalar> J{"current_volume_ratio", unit("1"), doc("det F.")};
-  In<Scalar> mean{"current_mean_volume_ratio", unit("1"), doc("det F, mean of the neighbourhood.")};
-  InOut<Scalar> energy{"strain_energy", unit("J/m3"), doc("Stored energy per reference volume.")};
-  SharedStructure structure;
-
-  void particle(auto i) const {
-    const double at[3] = {J[i], 0.5 * (J[i] + mean[i]), mean[i]};
-    double p[3];
-    structure->law.api->volumetric_pressure(structure->law.self, 3, at, p);
-    energy[i] -= (mean[i] - J[i]) / 6.0 * (p[0] + 4.0 * p[1] + p[2]);
   }
 };
 

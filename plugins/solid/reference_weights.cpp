@@ -127,11 +127,20 @@ void ReferenceWeights::linear_force(const Stiffness& stiffness, const double* u,
   double *stress = space.stress.data(), *held = space.held.data();
   const double q_factor = stiffness.hourglass / (spacing_ * spacing_);
   deform<D>(0, n_, u, q_factor, stress, held);
+  const PressureGrid* grid = stiffness.grid;
+  if (grid != nullptr) {
+    space.trace.assign(n_, 0.0), space.nodes.resize(grid->n_nodes());
+    for (std::uint64_t i = 0; i < n_; ++i)
+      for (int a = 0; a < D; ++a) space.trace[i] += stress[i * D * D + static_cast<std::size_t>(a * (D + 1))];
+    grid->means(space.trace.data(), space.nodes.data());
+  }
   for (std::uint64_t i = 0; i < n_; ++i) {
     Mat<D> gradient;
     std::copy_n(stress + i * D * D, D * D, gradient.e);
     const Mat<D> strain = symmetric_part(gradient);
-    const Mat<D> s = stiffness.lambda * trace(strain) * identity<D>() + 2.0 * stiffness.mu * strain;
+    double volumetric = stiffness.lambda * trace(strain);
+    if (grid != nullptr) volumetric += stiffness.bulk * (grid->at(i, space.nodes.data()) - trace(strain));
+    const Mat<D> s = volumetric * identity<D>() + 2.0 * stiffness.mu * strain;
     std::copy_n(s.e, D * D, stress + i * D * D);
   }
   force<D, true>(0, n_, stress, held, 1.0, out);

@@ -33,6 +33,7 @@
 #include <new>
 #include <vector>
 
+#include "pressure_grid.hpp"
 #include "shoal/abi.h"
 #include "stencils.hpp"
 
@@ -79,11 +80,15 @@ struct Stiffness {
   double lambda = 0, mu = 0;  // Pa
   double hourglass = 0;       // Pa, modulus of the hourglass control
   double density = 0;         // kg/m3
+  // Where pressure is taken on a grid: of the modulus lambda, `bulk` acts on the volume ratios of its nodes.
+  const PressureGrid* grid = nullptr;
+  double bulk = 0;  // Pa
 };
 
 // What `linear_force` computes on the way.
 struct LinearSpace {
   AlignedNumbers stress, held;
+  std::vector<double> trace, nodes;
 };
 
 // Row i of a neighbour list.

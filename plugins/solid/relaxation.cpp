@@ -75,7 +75,7 @@ void Relaxation::begin() {
 }
 
 void Relaxation::assemble() {
-  mass_.assemble(at.data(), {structure->weights, n_particles(), structure->stiffness(), spacing(),
+  mass_.assemble(at.data(), {structure->weights, n_particles(), structure->stiffness_on_grid(), spacing(),
                              volume.data(), F_at.data(), held.data()});
 }
 
@@ -128,7 +128,7 @@ double Relaxation::largest_square() const {
   for (int iteration = 0; iteration < iterations; ++iteration) {
     for (std::size_t k = 0; k < n; ++k)
       if ((held.data()[k / d] >> (k % d) & 1) != 0) u.data()[k] = 0.0;
-    weights.linear_force(structure->stiffness(), u.data(), f.data(), space);
+    weights.linear_force(structure->stiffness_on_grid(), u.data(), f.data(), space);
     double before = 0, after = 0;
     for (std::size_t k = 0; k < n; ++k) {
       const bool fixed = (held.data()[k / d] >> (k % d) & 1) != 0;

@@ -10,6 +10,7 @@
 #include "loads.hpp"
 #include "measures.hpp"
 #include "momentum.hpp"
+#include "pressure_noise.hpp"
 #include "stages.hpp"
 #include "stress.hpp"
 #include "volume_averaging.hpp"
@@ -32,6 +33,10 @@ SharedStructure structure_of(const SolidPhysics& physics, const Builder& b, Body
   const double dx = b.body(body).spacing;
   structure->settings = {physics.gradient.value() == "quadratic", 0.5 * physics.support * dx, dx,
                          physics.regularisation, physics.consistent};
+  if (physics.average_volume->word == "always" && structure->law.api->volumetric_pressure == nullptr)
+    throw CaseError(physics.average_volume.place() + ": the material of body '" + b.body(body).name +
+                    "' does not keep volume and shape apart, so there is no pressure to average; "
+                    "solid.neo_hookean (form: split) and solid.mooney_rivlin do");
   // Pressure presses layers out of line against the shear modulus alone, so what resists grows with the bulk modulus.
   const double mu = structure->constants.shear_modulus, K = structure->constants.bulk_modulus;
   structure->hourglass = physics.hourglass * mu * std::clamp(std::sqrt(K / (10.0 * mu)), 1.0, 10.0);
@@ -87,6 +92,7 @@ void SolidBody::on_demand(const char* name) const {
 bool SolidBody::averages() const {
   const std::string_view word = physics.average_volume->word;
   if (word == "never" || structure->law.api->volumetric_pressure == nullptr) return false;
+  if (structure->kinematics == SHOAL_PLANE_STRESS) return false;  // a sheet keeps its volume by its thickness
   return word == "always" || structure->constants.bulk_modulus > 10.0 * structure->constants.shear_modulus;
 }
 void SolidBody::attach_averaging(At at, const AveragingFields& names, std::uint32_t flags) const {
@@ -100,9 +106,7 @@ void SolidBody::attach_averaging(At at, const AveragingFields& names, std::uint3
         flags);
   };
   attach.operator()<VolumeRatio>("solid.volume_ratio", itself());
-  attach.operator()<MeanVolumeRatio>("solid.mean_volume_ratio", reference());
-  attach.operator()<MeanPressureOfVolume>("solid.mean_pressure", itself());
-  attach.operator()<PressureCorrection>("solid.pressure_correction", reference());
+  attach.operator()<PressureCorrection>("solid.pressure_correction", itself());
   attach.operator()<CorrectedStress>("solid.corrected_stress", itself());
 }
 void SolidBody::attach_current_state() const {
@@ -133,6 +137,7 @@ void SolidBody::attach_measures() const {
   on_demand<VonMises>("solid.von_mises");
   on_demand<PrincipalStress>("solid.principal_stress");
   on_demand<MeanPressure>("solid.pressure");
+  on_demand<PressureNoise>("solid.pressure_noise", reference(), [&](auto& op) { op.structure = structure; });
   on_demand<StrainEnergy>("solid.strain_energy", itself(), [&](auto& op) { declare_law_fields(op, false); });
   if (averages())
     on_demand<AveragedStrainEnergy>("solid.averaged_strain_energy", itself(),

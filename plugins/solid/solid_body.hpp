@@ -42,8 +42,8 @@ struct SolidPhysics : Physics {
       "bulk modulus K is more than ten times that, times sqrt(K / (10 mu)), at most 10. 0: none.",
       non_negative, default_to(5.0)};
   Param<Choice> average_volume{"average_volume", nullptr,
-                               "Whether the volumetric part of the energy takes the mean volume ratio of a "
-                               "neighbourhood, which keeps the "
+                               "Whether the volumetric part of the energy takes volume ratios on a grid of "
+                               "twice the spacing, which keeps the "
                                "pressure of nearly incompressible materials smooth; automatic: where the "
                                "bulk modulus is more than ten times the "
                                "shear modulus (Poisson's ratio above 0.452).",

@@ -6,6 +6,7 @@
 
 #include <memory>
 
+#include "pressure_grid.hpp"
 #include "reference_weights.hpp"
 #include "shoal/interfaces/stress_law.h"
 #include "shoal/physics.hpp"
@@ -22,11 +23,23 @@ struct Structure {
   double hourglass = 0;   // modulus of the hourglass control, Pa
   double wave_speed = 0;  // m/s, the largest when last looked at; 0 for laws that do not stiffen
   ReferenceWeights weights;
+  PressureGrid grid;  // of nearly incompressible materials
 
   Stiffness stiffness() const {
     // The modulus of longitudinal waves is lambda + 2 mu; in plane stress that of a plate.
     const double rho = constants.density, mu = constants.shear_modulus;
-    return {rho * constants.longitudinal_speed * constants.longitudinal_speed - 2.0 * mu, mu, hourglass, rho};
+    return {rho * constants.longitudinal_speed * constants.longitudinal_speed - 2.0 * mu,
+            mu,
+            hourglass,
+            rho,
+            nullptr,
+            0.0};
+  }
+  // With the pressure on its grid, once there is one.
+  Stiffness stiffness_on_grid() const {
+    Stiffness known = stiffness();
+    if (grid.built()) known.grid = &grid, known.bulk = constants.bulk_modulus;
+    return known;
   }
 };
 using SharedStructure = std::shared_ptr<Structure>;

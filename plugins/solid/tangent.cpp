@@ -3,6 +3,7 @@
 #include "tangent.hpp"
 
 #include <Eigen/Dense>
+#include <map>
 
 #include "shoal/eigen.hpp"
 
@@ -37,6 +38,8 @@ class Assembly {
 
   std::vector<Eigen::Triplet<double>> run() {
     for (std::uint64_t i = 0; i < in_.n; ++i) particle(i);
+    if (in_.stiffness.grid != nullptr)
+      for (std::size_t c = 0; c < in_.stiffness.grid->n_nodes(); ++c) node(c);
     return std::move(entries_);
   }
 
@@ -47,20 +50,43 @@ class Assembly {
     double psi;
   };
 
-  void particle(std::uint64_t i) {
+  // Calls add(j, weights, sign) for the neighbours of particle i and i itself.
+  template <class Add>
+  void for_each_weight(std::uint64_t i, const Add& add) const {
     const Stencil stencil = in_.weights.stencil(i);
-    const Mat<D> R = rotation<D>(in_.F + i * D * D);
-    around_.clear();
-    const auto add = [&](std::uint64_t j, const double* g, double sign) {
-      Vec<D> G;
-      for (int a = 0; a < D; ++a) G[a] = sign * g[a];
-      around_.push_back({j, G, sign * g[D]});
-    };
     for (std::uint32_t m = 0; m < stencil.n; ++m)
       add(static_cast<std::uint64_t>(static_cast<std::int64_t>(i) + stencil.offset[m]),
           stencil.forward + m * (D + 1), 1.0);
     add(i, stencil.sums, -1.0);
-    const double V = in_.volume[i], lambda = V * in_.stiffness.lambda, mu = V * in_.stiffness.mu;
+  }
+  static Vec<D> vector(const double* g, double sign) {
+    Vec<D> G;
+    for (int a = 0; a < D; ++a) G[a] = sign * g[a];
+    return G;
+  }
+
+  // Of the mean volume at a node of the grid of pressure.
+  void node(std::size_t c) {
+    std::map<std::uint64_t, Vec<D>> mean;  // its derivative by the position of each particle
+    in_.stiffness.grid->for_each_particle(c, [&](std::uint32_t i, double share) {
+      const Mat<D> R = rotation<D>(in_.F + std::size_t{i} * D * D);
+      for_each_weight(i, [&](std::uint64_t j, const double* g, double sign) {
+        mean.try_emplace(j, Vec<D>{}).first->second += share * (R * vector(g, sign));
+      });
+    });
+    const double factor = in_.stiffness.grid->volume(c) * in_.stiffness.bulk;
+    for (const auto& [a, by_a] : mean)
+      for (const auto& [b, by_b] : mean)
+        if (a >= b) block(a, b, factor * outer(by_a, by_b));
+  }
+  void particle(std::uint64_t i) {
+    const Mat<D> R = rotation<D>(in_.F + i * D * D);
+    around_.clear();
+    for_each_weight(i, [&](std::uint64_t j, const double* g, double sign) {
+      around_.push_back({j, vector(g, sign), sign * g[D]});
+    });
+    const double V = in_.volume[i], mu = V * in_.stiffness.mu;
+    const double lambda = V * (in_.stiffness.lambda - in_.stiffness.bulk);
     const double hourglass = V * in_.stiffness.hourglass / (in_.spacing * in_.spacing);
     for (Weight& weight : around_) turned_.push_back(R * weight.G);
     for (std::size_t a = 0; a < around_.size(); ++a)

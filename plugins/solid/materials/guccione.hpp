@@ -52,6 +52,7 @@ class Guccione final : public StressLaw {
     const Vec<3, Pack> Ef = E * f;
     return 0.5 * c * (fast_exp(exponent(E, Ef, dot(f, Ef))) - 1.0) + volumetric_energy(bulk, J);
   }
+  bool keeps_volume_apart() const override { return true; }
   Pack volumetric_pressure(Pack J) const override { return pressure_of_split_law(bulk, J); }
   bool stiffens() const override { return true; }
 

@@ -25,6 +25,7 @@ class J2Plasticity : public IsotropicLaw {
     const Tensor b = isochoric_factor(J) * (F * returned(F, point).metric * transpose(F));
     return 0.5 * mu() * (trace(b) - 3.0) + volumetric_energy(bulk_modulus(), J);
   }
+  bool keeps_volume_apart() const final { return true; }
   Pack volumetric_pressure(Pack J) const final { return pressure_of_split_law(bulk_modulus(), J); }
   bool stiffens() const final { return true; }
   // Of elastic waves: those of unloading are the fastest. Their modulus along a deformed length is J^2 U'' + 4/3 mu =

@@ -41,6 +41,7 @@ class MooneyRivlin final : public StressLaw {
     const Pack I1 = trace(C), I2 = 0.5 * (I1 * I1 - double_dot(C, C));
     return c1.value() * (f * I1 - 3.0) + c2.value() * (f * f * I2 - 3.0) + volumetric_energy(bulk, J);
   }
+  bool keeps_volume_apart() const override { return true; }
   Pack volumetric_pressure(Pack J) const override { return pressure_of_split_law(bulk, J); }
   bool stiffens() const override { return true; }
 };

@@ -36,9 +36,8 @@ class NeoHookean final : public IsotropicLaw {
     }
     return 0.5 * mu() * (isochoric_factor(J) * trace_C - 3.0) + volumetric_energy(bulk_modulus(), J);
   }
-  Pack volumetric_pressure(Pack J) const override {
-    return coupled() ? StressLaw::volumetric_pressure(J) : pressure_of_split_law(bulk_modulus(), J);
-  }
+  bool keeps_volume_apart() const override { return !coupled(); }
+  Pack volumetric_pressure(Pack J) const override { return pressure_of_split_law(bulk_modulus(), J); }
   bool stiffens() const override { return true; }
 
  private:

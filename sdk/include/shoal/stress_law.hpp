@@ -46,8 +46,9 @@ class StressLaw : public Material {
   // First Piola-Kirchhoff stress in Pa and stored energy in J/m3.
   virtual Mat<3, Pack> stress(const Mat<3, Pack>& F, LawPoint& point) const = 0;
   virtual Pack energy(const Mat<3, Pack>& F, LawPoint& point) const = 0;
-  // -U'(J), the pressure of the part of the energy that depends on the volume alone; see interfaces/stress_law.h.
-  // Any U will do whose modulus at J = 1 is the bulk modulus; this one is K/2 (J - 1)^2.
+  // Whether the energy is U(J) and a part that depends on the shape alone, and then -U'(J), the pressure; see
+  // interfaces/stress_law.h. A solver smooths the pressure of nearly incompressible materials that keep the two apart.
+  virtual bool keeps_volume_apart() const { return false; }
   virtual Pack volumetric_pressure(Pack J) const { return -bulk_modulus() * (J - 1.0); }
   // Whether waves become faster as the material is deformed, so that the time step must follow.
   virtual bool stiffens() const { return false; }
@@ -57,7 +58,8 @@ class StressLaw : public Material {
 
   const void* interface(std::string_view name, std::uint32_t revision) const override {
     if (name != SHOAL_STRESS_LAW || revision != SHOAL_STRESS_LAW_REVISION) return nullptr;
-    return stiffens() ? &table<true>() : &table<false>();
+    if (keeps_volume_apart()) return stiffens() ? &table<true, true>() : &table<false, true>();
+    return stiffens() ? &table<true, false>() : &table<false, false>();
   }
 
  protected:
@@ -71,7 +73,7 @@ class StressLaw : public Material {
   static StressLaw& of(void* self) { return material_of<StressLaw>(self); }
   static int dimensions_of(std::uint32_t kinematics) { return kinematics == SHOAL_THREE_DIMENSIONAL ? 3 : 2; }
 
-  template <bool speeds>
+  template <bool speeds, bool apart>
   static const shoal_stress_law& table();
 
   inline const std::vector<shoal_access>& accesses(std::uint32_t kinematics);
@@ -93,7 +95,7 @@ class StressLaw : public Material {
 
 inline LawField::LawField(StressLaw& law) { law.fields_.push_back(this); }
 
-template <bool speeds>
+template <bool speeds, bool apart>
 const shoal_stress_law& StressLaw::table() {
   static const shoal_stress_law functions{
       sizeof(shoal_stress_law),
@@ -110,7 +112,8 @@ const shoal_stress_law& StressLaw::table() {
         of(self).constants(kinematics, *out);
       },
       [](void* self, const shoal_stress_block* block) { return guarded([&] { of(self).stresses(*block); }); },
-      [](void* self, uint64_t n, const double* J, double* p) { of(self).pressures(n, J, p); },
+      apart ? +[](void* self, uint64_t n, const double* J, double* p) { of(self).pressures(n, J, p); }
+            : nullptr,
       speeds ? +[](void* self, const shoal_stress_block* block,
                    double* speed) { return guarded([&] { of(self).wave_speeds(*block, speed); }); }
              : nullptr};

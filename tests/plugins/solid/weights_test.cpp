@@ -309,11 +309,14 @@ TEST_CASE("particles that are looked at together get what each would get alone")
 
 // The linear force has its own tests: it is that of the operators.
 template <int D>
-void compare_tangent() {
+void compare_tangent(bool on_grid) {
   testing::Body body = solid_test::box(D, D == 2 ? 8 : 5, 0.15);
   const solid_test::Neighbours neighbours(body);
   const ReferenceWeights weights = weights_of(body, neighbours, solid_test::settings());
-  const Stiffness stiffness{1e6, 4e5, 2e5, 1000.0};
+  PressureGrid grid;
+  grid.build(D, body.size(), body["reference_position"].data(), body["volume"].data(), dx);
+  Stiffness stiffness{1e6, 4e5, 2e5, 1000.0};
+  if (on_grid) stiffness.grid = &grid, stiffness.bulk = 1.2e6;
   const std::size_t n = D * body.size();
   std::vector<double> F(n * D, 0.0), out(n + 8), expected(n);
   std::vector<std::int64_t> held(body.size(), 0);
@@ -343,8 +346,40 @@ void compare_tangent() {
 }
 
 TEST_CASE("the stiffness matrix times a displacement is the linear force") {
-  compare_tangent<2>();
-  compare_tangent<3>();
+  for (const bool on_grid : {false, true}) {
+    compare_tangent<2>(on_grid);
+    compare_tangent<3>(on_grid);
+  }
+}
+
+// Constants and, inside, linear functions are their own means; a wave of two spacings has none.
+TEST_CASE("the grid of pressure keeps smooth fields and takes alternating ones out") {
+  testing::Body body = solid_test::box(2, 12, 0.0);
+  PressureGrid grid;
+  grid.build(2, body.size(), body["reference_position"].data(), body["volume"].data(), dx);
+  CHECK(grid.n_nodes() == 49);
+  const auto through = [&](auto&& f) {
+    std::vector<double> values, nodes(grid.n_nodes()), out;
+    for (std::size_t i = 0; i < body.size(); ++i)
+      values.push_back(f(body["reference_position"][2 * i], body["reference_position"][2 * i + 1]));
+    grid.means(values.data(), nodes.data());
+    for (std::size_t i = 0; i < body.size(); ++i) out.push_back(grid.at(i, nodes.data()));
+    return out;
+  };
+  const auto place = [](double x) { return static_cast<int>(std::lround(x / dx - 0.5)); };
+  const auto constant = through([](double, double) { return 3.0; });
+  const auto linear = through([](double x, double y) { return 2.0 * x - y; });
+  const auto rows = through([&](double x, double) { return place(x) % 2 == 0 ? 1.0 : -1.0; });
+  const auto checkers =
+      through([&](double x, double y) { return (place(x) + place(y)) % 2 == 0 ? 1.0 : -1.0; });
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    const double x = body["reference_position"][2 * i], y = body["reference_position"][2 * i + 1];
+    CHECK(constant[i] == doctest::Approx(3.0).epsilon(1e-14));
+    const bool inside = std::min({x, y, 1.2 - x, 1.2 - y}) > 2.0 * dx;
+    if (inside) CHECK(linear[i] == doctest::Approx(2.0 * x - y).epsilon(1e-12));
+    if (inside) CHECK(std::fabs(rows[i]) < 1e-13);
+    if (inside) CHECK(std::fabs(checkers[i]) < 1e-13);
+  }
 }
 
 TEST_CASE("the largest frequency is that of the explicit step's limit") {

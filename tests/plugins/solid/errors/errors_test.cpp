@@ -86,4 +86,13 @@ TEST_CASE("bodies") {
   CHECK(refusal({.physics = "solid.clamp: {bodies: [block], where: x < 0.1}",
                  .scheme = "solid.quasi_static: {bodies: [block], loaded_at: 2}"}) ==
         "block.yaml:10:5: error: block.yaml:10:54: loaded_at is behind the end of the run");
+  CHECK(
+      refusal(
+          {.physics = "solid.clamp: {bodies: [block], where: x < 0.1}",
+           .scheme = "solid.total_lagrangian: {bodies: [block], average_volume: always}",
+           .material =
+               "{solid.st_venant_kirchhoff: {density: 1000, youngs_modulus: 1e6, poisson_ratio: 0.3}}"}) ==
+      "block.yaml:10:5: error: block.yaml:10:63: the material of body 'block' does not keep volume and shape "
+      "apart, so there is no pressure to average; solid.neo_hookean (form: split) and solid.mooney_rivlin "
+      "do");
 }
