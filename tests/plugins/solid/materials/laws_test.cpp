@@ -221,12 +221,14 @@ TEST_CASE("the volumetric pressure has the bulk modulus, and is all of the press
     constexpr std::size_t n = 11;
     const Law law = each.make(SHOAL_THREE_DIMENSIONAL, n);
     const double K = law.constants().bulk_modulus;
+    // Those that do not keep volume and shape apart offer none.
+    CHECK((law.law->volumetric_pressure != nullptr) == each.split);
+    if (!each.split || law.law->volumetric_pressure == nullptr) continue;
     const std::vector<double> near{1.0 - 1e-5, 1.0, 1.0 + 1e-5};
     std::vector<double> p(3);
     law.law->volumetric_pressure(law.self(), 3, near.data(), p.data());
     CHECK((p[0] - p[2]) / 2e-5 == doctest::Approx(K).epsilon(1e-6));
     CHECK(p[1] == 0.0);
-    if (!each.split) continue;
     const auto F = random_deformations(n, 0.25, 3, 13);
     const auto result = law(F, false, 1e-3);
     for (std::size_t i = 0; i < n; ++i) {
