@@ -129,16 +129,26 @@ inline void gather_tuple(const double* base, const std::uint32_t* j, Raw* out) {
   }
 }
 
+// Sums of bits without sign: those of NaN, infinity and negative numbers would overflow.
+typedef std::uint64_t Bits __attribute__((vector_size(64)));
+inline __m512i add_bits(__m512i a, __m512i b) {
+  return reinterpret_cast<__m512i>(reinterpret_cast<Bits>(a) + reinterpret_cast<Bits>(b));
+}
+inline __m512i subtract_bits(__m512i a, __m512i b) {
+  return reinterpret_cast<__m512i>(reinterpret_cast<Bits>(a) - reinterpret_cast<Bits>(b));
+}
+
 // For pack_math.hpp. 2^n, where `shifted` is the whole number n (-1022 <= n <= 1023) plus 1.5 * 2^52.
 inline Raw power_of_two(Raw shifted) {
   const __m512i bits = _mm512_castpd_si512(shifted) << 52;
-  return _mm512_castsi512_pd(bits + _mm512_castpd_si512(broadcast(1.0)));
+  return _mm512_castsi512_pd(add_bits(bits, _mm512_castpd_si512(broadcast(1.0))));
 }
 // x = mantissa * 2^n with sqrt(1/2) <= mantissa < sqrt(2), for normal x > 0; returns n.
 inline Raw split_exponent(Raw x, Raw& mantissa) {
   const __m512i one = _mm512_castpd_si512(broadcast(1.0)), bits = _mm512_castpd_si512(x);
-  const __m512i biased = (bits - _mm512_castpd_si512(broadcast(0.70710678118654752)) + one) >> 52;
-  mantissa = _mm512_castsi512_pd(bits - (biased << 52) + one);
+  const __m512i root = _mm512_castpd_si512(broadcast(0.70710678118654752));
+  const __m512i biased = add_bits(subtract_bits(bits, root), one) >> 52;
+  mantissa = _mm512_castsi512_pd(add_bits(subtract_bits(bits, biased << 52), one));
   const Raw shift = broadcast(0x1.8p52);
   return _mm512_castsi512_pd(biased + _mm512_castpd_si512(shift)) - (shift + broadcast(1023.0));
 }
@@ -220,16 +230,26 @@ inline void gather_tuple(const double* base, const std::uint32_t* j, Raw* out) {
   }
 }
 
+// Sums of bits without sign: those of NaN, infinity and negative numbers would overflow.
+typedef std::uint64_t Bits __attribute__((vector_size(32)));
+inline __m256i add_bits(__m256i a, __m256i b) {
+  return reinterpret_cast<__m256i>(reinterpret_cast<Bits>(a) + reinterpret_cast<Bits>(b));
+}
+inline __m256i subtract_bits(__m256i a, __m256i b) {
+  return reinterpret_cast<__m256i>(reinterpret_cast<Bits>(a) - reinterpret_cast<Bits>(b));
+}
+
 // For pack_math.hpp. 2^n, where `shifted` is the whole number n (-1022 <= n <= 1023) plus 1.5 * 2^52.
 inline Raw power_of_two(Raw shifted) {
   const __m256i bits = _mm256_castpd_si256(shifted) << 52;
-  return _mm256_castsi256_pd(bits + _mm256_castpd_si256(broadcast(1.0)));
+  return _mm256_castsi256_pd(add_bits(bits, _mm256_castpd_si256(broadcast(1.0))));
 }
 // x = mantissa * 2^n with sqrt(1/2) <= mantissa < sqrt(2), for normal x > 0; returns n.
 inline Raw split_exponent(Raw x, Raw& mantissa) {
   const __m256i one = _mm256_castpd_si256(broadcast(1.0)), bits = _mm256_castpd_si256(x);
-  const __m256i biased = (bits - _mm256_castpd_si256(broadcast(0.70710678118654752)) + one) >> 52;
-  mantissa = _mm256_castsi256_pd(bits - (biased << 52) + one);
+  const __m256i root = _mm256_castpd_si256(broadcast(0.70710678118654752));
+  const __m256i biased = add_bits(subtract_bits(bits, root), one) >> 52;
+  mantissa = _mm256_castsi256_pd(add_bits(subtract_bits(bits, biased << 52), one));
   const Raw shift = broadcast(0x1.8p52);
   return _mm256_castsi256_pd(biased + _mm256_castpd_si256(shift)) - (shift + broadcast(1023.0));
 }
@@ -258,6 +278,14 @@ struct RawIndex {
   std::uint32_t lane[lanes];
 };
 
+// Sums of bits without sign: those of NaN, infinity and negative numbers would overflow.
+typedef std::uint64_t Bits __attribute__((vector_size(16)));
+inline Long2 add_bits(Long2 a, Long2 b) {
+  return reinterpret_cast<Long2>(reinterpret_cast<Bits>(a) + reinterpret_cast<Bits>(b));
+}
+inline Long2 subtract_bits(Long2 a, Long2 b) {
+  return reinterpret_cast<Long2>(reinterpret_cast<Bits>(a) - reinterpret_cast<Bits>(b));
+}
 inline Double2 bits_to_double(Long2 a) { return reinterpret_cast<Double2>(a); }
 inline Long2 bits_to_long(Double2 a) { return reinterpret_cast<Long2>(a); }
 inline Double2 select_half(Long2 m, Double2 a, Double2 b) {
@@ -332,7 +360,8 @@ inline void gather_tuple(const double* base, const std::uint32_t* j, Raw* out) {
 inline Raw power_of_two(Raw shifted) {
   Raw power;
   for (int k = 0; k < 2; ++k)
-    power.half[k] = bits_to_double((bits_to_long(shifted.half[k]) << 52) + bits_to_long(Double2{1.0, 1.0}));
+    power.half[k] =
+        bits_to_double(add_bits(bits_to_long(shifted.half[k]) << 52, bits_to_long(Double2{1.0, 1.0})));
   return power;
 }
 // x = mantissa * 2^n with sqrt(1/2) <= mantissa < sqrt(2), for normal x > 0; returns n.
@@ -343,8 +372,8 @@ inline Raw split_exponent(Raw x, Raw& mantissa) {
   Raw n;
   for (int k = 0; k < 2; ++k) {
     const Long2 bits = bits_to_long(x.half[k]);
-    const Long2 biased = (bits - root + one) >> 52;
-    mantissa.half[k] = bits_to_double(bits - (biased << 52) + one);
+    const Long2 biased = add_bits(subtract_bits(bits, root), one) >> 52;
+    mantissa.half[k] = bits_to_double(add_bits(subtract_bits(bits, biased << 52), one));
     n.half[k] = bits_to_double(biased + bits_to_long(shift)) - (shift + 1023.0);
   }
   return n;
