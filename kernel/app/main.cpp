@@ -12,6 +12,12 @@
 #include "kernel/particles/errors.hpp"
 #include "kernel/plugins/errors.hpp"
 
+#ifdef __SANITIZE_ADDRESS__
+// LeakSanitizer of gcc 12 falls over the thread-local storage of VTK's libraries, which a plugin opens.
+extern "C" __attribute__((visibility("default"))) const char* __lsan_default_options();  // NOLINT
+extern "C" __attribute__((visibility("default"))) const char* __lsan_default_options() { return "use_tls=0"; }
+#endif
+
 namespace shoal::kernel::app {
 namespace {
 

@@ -58,6 +58,19 @@ void add_running(CLI::App& app, Options& options) {
       ->default_str("30 min");
 }
 
+// What study and report have in common.
+void add_bounds(CLI::App& app, Options& options) {
+  app.add_flag(
+      "--limits", options.limits,
+      "Find the longest stable steps: raise each factor of time steps that the physics declares until a run "
+      "fails");
+  app.add_option(
+         "--within", options.within,
+         "Wall time for the runs of a case, and again for its limits; what is not done then is left out, and "
+         "goes on when called again with more")
+      ->type_name("TIME");
+}
+
 void add_study(CLI::App& app, Options& options) {
   app.add_option(
          "--vary", options.vary,
@@ -68,6 +81,12 @@ void add_study(CLI::App& app, Options& options) {
   app.add_option("--want", options.want,
                  "Name the cheapest run within an error, of the first reference or of a probe: error=1%")
       ->type_name("PROBE=ERROR");
+  app.add_option("--limit", options.limit,
+                 "The same for one key, from its value in the case or from another one: --limit "
+                 "physics.0.fluid.wcsph.acoustic_cfl")
+      ->type_name("KEY[=VALUE]")
+      ->allow_extra_args(false);
+  add_bounds(app, options);
   app.add_option("-o,--output", options.output, "Folder of the study; ./results/NAME_study without it")
       ->type_name("FOLDER");
   app.add_flag("-f,--force", options.force, "Run all anew, also what has results");
@@ -77,6 +96,7 @@ void add_report(CLI::App& app, Options& options) {
   app.add_option("CASES", options.cases, "Cases, or folders of cases; ./cases without it")->type_name("");
   app.add_option("-o,--output", options.output, "Folder of the report; ./docs/report without it")
       ->type_name("FOLDER");
+  add_bounds(app, options);
   app.add_option("--results", options.folder, "Folder of the studies; what is there is not run again")
       ->type_name("FOLDER")
       ->default_str("results/report");

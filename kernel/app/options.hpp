@@ -35,6 +35,9 @@ struct Options {
   std::vector<std::string> cases;  ///< report: cases and folders
   std::vector<std::string> vary;   ///< study: KEY=VALUE,VALUE,...
   std::string want;                ///< study: error=1%
+  bool limits = false;             ///< study, report: of all factors of time steps
+  std::vector<std::string> limit;  ///< study: KEY, KEY=VALUE
+  std::string within;              ///< study, report: wall time, with a unit
 };
 
 /// Reads the command line. Where it asks for help or is wrong, prints that and gives the exit code instead.

@@ -99,6 +99,7 @@ class CaseReader {
     model.physics = values.objects("physics");
     model.outputs = values.objects("output");
     model.study = values.texts("study");
+    model.limits = values.texts("limits");
     model.smoothing = section("smoothing");
     read_domain();
     read_bodies();

@@ -134,6 +134,7 @@ struct CaseModel {
   std::vector<ProbeModel> probes;
   std::vector<ReferenceModel> references;
   std::vector<std::string> study;           ///< KEY=VALUE,VALUE,...
+  std::vector<std::string> limits;          ///< KEY=VALUE
   const shoal_object* smoothing = nullptr;  ///< of section_table("smoothing")
   const shoal_object* values = nullptr;     ///< of case_table()
   ObjectStore store;

@@ -251,6 +251,11 @@ const std::vector<shoal_parameter>& case_rows() {
       row(SHOAL_TEXT, "study", nullptr, list, "[]",
           "What `shoal study` and `shoal report` vary where the command line does not: KEY=VALUE,VALUE,...",
           "[\"dx=$H/20,$H/40,$H/80\"]"),
+      row(SHOAL_TEXT, "limits", nullptr, list, "[]",
+          "Other values, KEY=VALUE, with which `--limits` of `shoal study` and `shoal report` looks for the "
+          "longest "
+          "stable time steps, so that it does not take long.",
+          "[run.end=0.5 s]"),
   };
   return rows;
 }

@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint32_t known_flags = SHOAL_PARAMETER_REQUIRED | SHOAL_PARAMETER_LIST |
                                       SHOAL_PARAMETER_HAS_MINIMUM | SHOAL_PARAMETER_HAS_MAXIMUM |
                                       SHOAL_PARAMETER_MINIMUM_EXCLUDED | SHOAL_PARAMETER_MAXIMUM_EXCLUDED |
-                                      SHOAL_PARAMETER_NAMES;
+                                      SHOAL_PARAMETER_NAMES | SHOAL_PARAMETER_STEP_FACTOR;
 
 bool is_blank(const char* text) {
   return !text || std::string_view(text).find_first_not_of(" \t\n") == std::string_view::npos;
@@ -63,6 +63,8 @@ class ParameterTable {
     if (is_blank(p.doc)) problem("it has no doc");
     if (p.kind < SHOAL_BOOLEAN || p.kind > SHOAL_OBJECT) return problem("unknown " + value_kind_text(p.kind));
     if (p.flags & ~known_flags) problem("it has unknown flags");
+    if (p.flags & SHOAL_PARAMETER_STEP_FACTOR && (p.kind != SHOAL_REAL || p.flags & SHOAL_PARAMETER_LIST))
+      problem("only a single number can be a factor of time steps");
     check_unit(p);
     check_bounds(p);
     check_choices(p);

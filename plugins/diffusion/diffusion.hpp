@@ -85,7 +85,8 @@ struct Diffusion final : Physics {
       "accuracy", "1",
       "Error that rkl2 may make by its steps in the whole run, root mean square over the range of the field.",
       between(1e-12, 0.1), default_to(1e-4)};
-  Param<double> cfl{"cfl", "1", "Step over the largest one that is stable.", positive, default_to(0.9)};
+  Param<double> cfl{
+      "cfl", "1", "Step over the largest one that is stable.", positive, default_to(0.9), scales_time_step};
 
   void build(const Builder& builder);
 };

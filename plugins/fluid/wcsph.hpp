@@ -97,10 +97,10 @@ struct Wcsph final : Physics {
                               "of two particles, which keep angular momentum to rounding; take it for "
                               "viscous fluids that turn freely.",
                               one_of("morris", "monaghan_gingold"), default_to("morris")};
-  Param<double> advection_cfl{"advection_cfl", "1", "Advection step over h / |v|.", positive,
-                              default_to(0.25)};
-  Param<double> acoustic_cfl{"acoustic_cfl", "1", "Acoustic step over h / (c + |v|).", positive,
-                             default_to(0.6)};
+  Param<double> advection_cfl{
+      "advection_cfl", "1", "Advection step over h / |v|.", positive, default_to(0.25), scales_time_step};
+  Param<double> acoustic_cfl{
+      "acoustic_cfl", "1", "Acoustic step over h / (c + |v|).", positive, default_to(0.6), scales_time_step};
   Param<double> dissipation_limiter{
       "dissipation_limiter", "1",
       "Factor eta of the Riemann solver's limiter min(eta (u_L - u_R) / c, 1); larger damps more.",

@@ -30,8 +30,9 @@ struct TotalLagrangian final : SolidPhysics {
       default_to(0.0),
       example("0.02")};
   Param<double> step_factor{
-      "step_factor", "1",          "Time step over the largest stable one of the undeformed body.",
-      positive,      at_most(1.0), default_to(0.95)};
+      "step_factor",   "1",          "Time step over the largest stable one of the undeformed body.",
+      positive,        at_most(1.0), default_to(0.95),
+      scales_time_step};
 
   void build(const Builder& builder);
 };

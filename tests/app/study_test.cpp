@@ -161,6 +161,103 @@ TEST_CASE("a case may say what a study varies") {
   CHECK(csv("named/study.csv").size() == 2);
 }
 
+namespace {
+
+// Grains that only decay, v' = -c v by explicit Euler: stable for steps below 2 / c, which the factor 2 gives.
+std::string decaying(const std::string& more) {
+  std::string text =
+      grains("probes:\n  speed: {maximum: {of: velocity.magnitude, body: pile}, every: 1 ms}\n" + more,
+             "bodies: [pile], damping: 2e4, stiffness: 0", "0.01");
+  const std::string gravity = "gravity: [0, -9.81]\n";
+  return text.erase(text.find(gravity), gravity.size());
+}
+
+}  // namespace
+
+TEST_CASE("a study finds the longest stable step, where it is known") {
+  std::filesystem::remove_all("limits");
+  write("pile.yaml", decaying(""));
+  const Result result = shoal({"study", "pile.yaml", "--limits", "-o", "limits"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const auto table = csv("limits/limits.csv");
+  REQUIRE(table.size() == 2);
+  CHECK(table[1][0] == "physics.0.grains.falling.step_factor");
+  CHECK(table[1][column(table, "default")] == "1");
+  const double holds = std::stod(table[1][column(table, "holds_to")]),
+               fails = std::stod(table[1][column(table, "fails_at")]);
+  CHECK(holds < 2.0);
+  CHECK(fails > 2.0);
+  CHECK(fails == doctest::Approx(1.1 * holds).epsilon(1e-3));
+  CHECK(contains(table[1][column(table, "why")], "speed [m/s] of speed reaches "));
+  CHECK(contains(result.out, "step_factor"));
+  // What has run is not run again.
+  const Result again = shoal({"study", "pile.yaml", "--limits", "-o", "limits"});
+  CHECK(contains(again.out, "limit  step_factor=1.949  finished already"));
+  CHECK(csv("limits/limits.csv") == table);
+}
+
+TEST_CASE("any key may be raised, with the values that the case names for it") {
+  std::filesystem::remove_all("limits");
+  std::string text = decaying(
+      "reference:\n  - {probe: speed, exact: 0, error: max, scale: 1, tolerance: 1}\nlimits: "
+      "[run.end=0.004]\n");
+  const std::string run = "run: {end: 0.01}";
+  write("pile.yaml",
+        text.replace(text.find(run), run.size(), "run: {end: 0.01, time_step_factors: {motion: 1}}"));
+  const Result result =
+      shoal({"study", "pile.yaml", "-o", "limits", "--limit", "run.time_step_factors.motion=1.5"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const auto table = csv("limits/limits.csv");
+  REQUIRE(table.size() == 2);
+  CHECK(table[1][column(table, "holds_to")] == "1.997");
+  CHECK(table[1][column(table, "fails_at")] == "2.196");
+  CHECK(contains(table[1][column(table, "why")], "speed max misses its reference by "));
+  CHECK(contains(read("limits/limits/default/case.yaml"), "end: 0.004"));
+  CHECK_FALSE(contains(read("limits/runs/run/case.yaml"), "end: 0.004"));
+}
+
+TEST_CASE("what a study is asked of limits is checked before anything runs") {
+  std::filesystem::remove_all("asked");
+  write("pile.yaml", decaying(""));
+  const auto complaint = [](const std::string& limit) {
+    const Result result = shoal({"study", "pile.yaml", "-o", "asked", "--limit", limit});
+    CHECK(result.code == 2);
+    return result.err;
+  };
+  CHECK(contains(complaint("dx"),
+                 "<--limit dx>: error: 'dx' is not declared as a factor of time steps, so it needs a value\n"
+                 "      where to begin: --limit dx=VALUE\n"
+                 "      declared by the physics: physics.0.grains.falling.step_factor"));
+  CHECK(contains(complaint("dx=-1"), "<--limit dx=-1>: error: the value to begin with must be positive"));
+  CHECK(contains(complaint("dy=1"), "dy"));
+  CHECK_FALSE(std::filesystem::exists("asked"));
+}
+
+TEST_CASE("a study keeps within its time and goes on with more") {
+  std::filesystem::remove_all("within");
+  write("pile.yaml", known_error("output:\n  - grains.tables: {every: 5 ms, pause: 0.1}\n"));
+  std::vector<std::string> words{"study", "pile.yaml", "--vary",   "dx=0.2,0.1",
+                                 "-o",    "within",    "--within", "0.7 s"};
+  const Result result = shoal(words);
+  INFO(result.err);
+  CHECK(result.code == 0);
+  auto table = csv("within/study.csv");
+  REQUIRE(table.size() == 3);
+  CHECK(table[1][column(table, "status")].starts_with("stopped at "));
+  CHECK(table[2][column(table, "status")] == "left out");
+  CHECK(contains(result.err, "warning: dx=0.1: 0.7 s were over"));
+  words.pop_back();
+  words.push_back("1 min");
+  CHECK(shoal(words).code == 0);
+  CHECK(contains(read("within/runs/dx=0.2.log"), " ms to 0.1 s"));
+  table = csv("within/study.csv");
+  CHECK(table[1][column(table, "status")] == "finished");
+  CHECK(table[2][column(table, "status")] == "finished");
+  CHECK(std::stod(table[2][column(table, "height max order")]) == doctest::Approx(2.0));
+}
+
 TEST_CASE("a report holds what its cases give, and runs nothing twice") {
   std::filesystem::remove_all("report");
   std::filesystem::remove_all("studies");
@@ -188,4 +285,15 @@ TEST_CASE("a report holds what its cases give, and runs nothing twice") {
   CHECK(shoal(words).code == 3);
   CHECK(std::filesystem::last_write_time("studies/soft_pile/runs/dx=0.1/summary.json") == written);
   CHECK(shoal({"report", "nowhere"}).code == 2);
+
+  // With limits, and within a time in which the first case alone is done.
+  write("cases/soft/decay.yaml", decaying("output:\n  - grains.tables: {every: 1 ms, pause: 0.5}\n"));
+  write("cases/soft/broken.yaml", decaying(""));
+  shoal({"report", "cases", "-o", "report", "--results", "bounded", "--limits", "--within", "2 s"});
+  const std::string bounded = read("report/report.md");
+  CHECK(contains(bounded, "; each case within 2 s"));
+  CHECK(contains(bounded, "| soft/broken | Falling grains | 1 | no reference |  |  |  |"));
+  CHECK(contains(bounded, "| step_factor 1.949 (1) |"));
+  CHECK(contains(bounded, "| step_factor | 1 | 1.949 | 2.144 | speed [m/s] of speed reaches "));
+  CHECK(contains(bounded, "| soft/decay | Falling grains | 1 | stopped at "));
 }

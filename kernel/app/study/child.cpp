@@ -8,10 +8,14 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
 #include <system_error>
+#include <thread>
 
 #include "kernel/output/atomic_file.hpp"
 
@@ -41,12 +45,26 @@ class Redirection {
   posix_spawn_file_actions_t actions_{};
 };
 
+// Leaves its status to be waited for.
+bool ends_within(pid_t child, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  do {
+    siginfo_t info{};
+    if (::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+        info.si_pid == child)
+      return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  } while (std::chrono::duration<double>(Clock::now() - begin).count() < seconds);
+  return false;
+}
+
 }  // namespace
 
 std::filesystem::path this_program() { return std::filesystem::read_symlink("/proc/self/exe"); }
 
-int run_program(const std::filesystem::path& program, std::vector<std::string> arguments,
-                const std::filesystem::path& log) {
+ProgramEnd run_program(const std::filesystem::path& program, std::vector<std::string> arguments,
+                       const std::filesystem::path& log, double seconds) {
   arguments.insert(arguments.begin(), program.string());
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -57,11 +75,15 @@ int run_program(const std::filesystem::path& program, std::vector<std::string> a
           ::posix_spawn(&child, program.c_str(), redirection.actions(), nullptr, argv.data(), environ);
       error != 0)
     throw std::system_error(error, std::generic_category(), "cannot start " + program.string());
+  ProgramEnd end;
+  if (std::isfinite(seconds)) end.out_of_time = !ends_within(child, seconds);
+  if (end.out_of_time) ::kill(child, SIGINT);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0)
     if (errno != EINTR)
       throw std::system_error(errno, std::generic_category(), "waiting for " + program.string());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  end.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return end;
 }
 
 std::filesystem::path find_program(const std::string& name) {

@@ -14,8 +14,8 @@
 #include "kernel/app/session.hpp"
 #include "kernel/app/study/child.hpp"
 #include "kernel/app/study/files.hpp"
+#include "kernel/app/study/limits.hpp"
 #include "kernel/app/text.hpp"
-#include "kernel/build_info.hpp"
 #include "kernel/case/overrides.hpp"
 #include "kernel/output/atomic_file.hpp"
 
@@ -57,15 +57,19 @@ class StudyDriver {
     check();
     watch_interrupts();
     make_folder(folder_);
-    for (std::size_t k = 0; k < runs_.size(); ++k) {
-      if (interrupted()) break;
-      run(runs_[k], k);
+    CaseRunner runner(options_, text_of_case_, read_budget(options_));
+    for (std::size_t k = 0; k < runs_.size() && !interrupted(); ++k) {
+      study_.results.push_back(runner.run(request_of(k)));
+      if (!study_.results.back().finished())
+        Console::warning(runs_[k].name + ": " + study_.results.back().why);
     }
     write();
+    find_limits();
     tell();
     if (interrupted()) return exit_interrupted;
-    const bool all = std::all_of(study_.results.begin(), study_.results.end(),
-                                 [](const StudyResult& result) { return result.finished(); });
+    const bool all = std::all_of(study_.results.begin(), study_.results.end(), [](const StudyResult& result) {
+      return result.finished() || result.out_of_time;
+    });
     return all ? exit_done : exit_physics_failed;
   }
 
@@ -79,6 +83,10 @@ class StudyDriver {
 
   void read_case() {
     const Session session(options_, options_.case_file, true);
+    const std::vector<StepFactor> declared = declared_step_factors(session.model());
+    if (options_.limits) factors_ = declared;
+    for (const std::string& text : options_.limit) factors_.push_back(read_step_factor(text, declared));
+    limit_settings_ = session.model().limits;
     study_.title = session.model().title.empty() ? case_name(options_.case_file) : session.model().title;
     for (const std::string& text : options_.vary.empty() ? session.model().study : options_.vary)
       study_.variations.push_back(read_variation(text));
@@ -91,78 +99,41 @@ class StudyDriver {
       options.settings = settings(run);
       const Session session(options, options.case_file, true);
     }
+    if (factors_.empty()) return;
+    Options options = options_;
+    options.settings = settings_for_limits();
+    for (const StepFactor& factor : factors_)
+      options.settings.push_back(factor.key + "=" + significant(factor.standard, 4));
+    const Session session(options, options.case_file, true);
   }
 
-  std::filesystem::path folder_of(const StudyRun& run) const { return folder_ / "runs" / run.name; }
-
-  // What the results of a run depend on; kept beside them.
-  std::string key_of(const StudyRun& run) const {
-    std::string key = std::string("shoal ") + std::string(build_info::version) + "\n";
-    for (const std::string& setting : settings(run)) key += "--set " + setting + "\n";
-    return key + text_of_case_;
+  RunRequest request_of(std::size_t k) const {
+    return {runs_[k], settings(runs_[k]), folder_ / "runs" / runs_[k].name,
+            fmt::format("{}/{}  ", k + 1, runs_.size())};
   }
 
-  void run(const StudyRun& run, std::size_t number) {
-    const std::filesystem::path results = folder_of(run), key_file = results.string() + ".key",
-                                log = results.string() + ".log";
-    make_folder(results.parent_path());
-    const bool known = std::filesystem::exists(key_file) && std::filesystem::exists(results);
-    const bool same = known && read_whole_file(key_file) == key_of(run);
-    if (known && !same && !options_.force)
-      throw UserError(option_place(results.string()),
-                      "it holds results of another case, of other settings, or of another version",
-                      {"choose another folder with --output, or replace them with --force"});
-    const StudyResult before = read_result(run, results);
-    if (same && !options_.force && (before.finished() || before.status == "failed")) {
-      Console::inform(
-          fmt::format("{}/{}  {}  {} already", number + 1, runs_.size(), run.name, before.status));
-      study_.results.push_back(before);
-      return;
+  // Of the first combination, which is to be the cheapest, and as the case asks for where the command line does not.
+  std::vector<std::string> settings_for_limits() const {
+    std::vector<std::string> all = settings(runs_[0]);
+    for (const std::string& setting : limit_settings_) {
+      const std::string key = setting.substr(0, setting.find('=') + 1);
+      if (std::none_of(options_.settings.begin(), options_.settings.end(),
+                       [&](const std::string& own) { return own.starts_with(key); }))
+        all.push_back(setting);
     }
-    std::vector<std::string> arguments{"run", options_.case_file, "--output", results.string(), "--force"};
-    if (same && !options_.force && has_checkpoint(results)) arguments = {"resume", results.string()};
-    if (arguments[0] == "run")
-      for (const std::string& setting : settings(run)) arguments.insert(arguments.end(), {"--set", setting});
-    add_common(arguments);
-    write_atomically(key_file, key_of(run));
-    Console::status(fmt::format("{}/{}  {}", number + 1, runs_.size(), run.name));
-    const int code = run_program(this_program(), arguments, log);
-    Console::status("");
-    note_result(run, number, code, log);
+    return all;
   }
 
-  void add_common(std::vector<std::string>& arguments) const {
-    for (const auto& path : options_.plugin_paths)
-      arguments.insert(arguments.end(), {"--plugin-path", path.string()});
-    if (options_.allow_plugin_paths) arguments.emplace_back("--allow-plugin-paths");
-    if (options_.threads > 0)
-      arguments.insert(arguments.end(), {"--threads", std::to_string(options_.threads)});
-  }
-
-  static bool has_checkpoint(const std::filesystem::path& results) {
-    return std::filesystem::exists(results / "checkpoints") &&
-           !std::filesystem::is_empty(results / "checkpoints");
-  }
-
-  void note_result(const StudyRun& run, std::size_t number, int code, const std::filesystem::path& log) {
-    StudyResult result = read_result(run, folder_of(run));
-    if (!result.finished() && result.why.empty())
-      result.why = code == exit_interrupted ? "interrupted"
-                                            : "exit code " + std::to_string(code) + ", see " + log.string();
-    if (result.status == "running")
-      result.status = "failed";  // it ended without a word: killed, out of memory
-    std::string line = fmt::format("{}/{}  {}  {}", number + 1, runs_.size(), run.name, result.status);
-    if (result.finished()) line += " in " + duration_text(result.wall_seconds);
-    for (const StudyError& error : result.errors)
-      if (result.finished()) line += fmt::format(", {} {}", error.probe, percent_text(error.error));
-    Console::inform(line);
-    if (!result.finished()) Console::warning(run.name + ": " + result.why);
-    Console::event({{"event", "study_run"},
-                    {"run", run.name},
-                    {"status", result.status},
-                    {"wall_seconds", result.wall_seconds},
-                    {"folder", folder_of(run).string()}});
-    study_.results.push_back(std::move(result));
+  void find_limits() {
+    if (factors_.empty()) return;
+    RunRequest standard = request_of(0);
+    standard.label = "limit  ";
+    standard.settings = settings_for_limits();
+    if (standard.settings != settings(runs_[0]))
+      standard = {{"default", {}}, standard.settings, folder_ / "limits" / "default", "limit  "};
+    CaseRunner runner(options_, text_of_case_, read_budget(options_));
+    limits_ = app::find_limits(runner, factors_, standard, folder_ / "limits");
+    write_atomically(folder_ / "limits.csv", limits_csv(limits_));
   }
 
   void choose_error() {
@@ -195,10 +166,10 @@ class StudyDriver {
           folder_.string() + ")");
       return;
     }
-    const int code = run_program(
+    const ProgramEnd end = run_program(
         "/bin/sh", {"-c", "cd \"$1\" && exec \"$2\" study.gnuplot", "sh", folder_.string(), gnuplot.string()},
         folder_ / "gnuplot.log");
-    if (code != 0) Console::warning("gnuplot failed; see " + (folder_ / "gnuplot.log").string());
+    if (end.code != 0) Console::warning("gnuplot failed; see " + (folder_ / "gnuplot.log").string());
   }
 
   void tell() const {
@@ -217,6 +188,7 @@ class StudyDriver {
                              percent_text(study_.results[*best].errors[study_.chosen].error))
                : fmt::format("no run has {} within {}\n", names[study_.chosen], percent_text(wish_->error));
     }
+    if (!limits_.empty()) text += limits_table(limits_);
     Console::print(text + "results in " + folder_.string());
     Console::event({{"event", "study"}, {"folder", folder_.string()}, {"text", text}});
   }
@@ -227,6 +199,9 @@ class StudyDriver {
   std::vector<StudyRun> runs_;
   std::filesystem::path folder_;
   std::string text_of_case_;
+  std::vector<StepFactor> factors_;
+  std::vector<std::string> limit_settings_;
+  std::vector<Limit> limits_;
 };
 
 }  // namespace

@@ -23,12 +23,6 @@ std::string order_text(const std::optional<double>& order) {
   return order ? fmt::format("{:.2f}", *order) : "";
 }
 
-std::string csv_cell(std::string text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2) text.insert(at, "\"");
-  return '"' + text + '"';
-}
-
 std::string last_word(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
 // What distinguishes the curves of a picture: the values of all variations but the refined one.
@@ -99,6 +93,12 @@ std::string picture(const std::vector<Curve>& all, const std::string& name, cons
 }
 
 }  // namespace
+
+std::string csv_cell(std::string text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2) text.insert(at, "\"");
+  return '"' + text + '"';
+}
 
 std::vector<std::string> error_names(const Study& study) {
   std::vector<std::string> names;

@@ -28,6 +28,9 @@ std::vector<std::string> error_names(const Study& study);
 std::string study_table(const Study& study);
 std::string study_csv(const Study& study);
 
+/// A value as it stands in a file of comma-separated values.
+std::string csv_cell(std::string text);
+
 /// A script of gnuplot that draws error_against_spacing and error_against_time (.svg and .png) in its own folder;
 /// empty if no run has the chosen error.
 std::string study_plot(const Study& study);

@@ -58,6 +58,7 @@ class StudyTable {
   std::string name(std::size_t reference) const {
     return table_[0][reference].substr(0, table_[0][reference].size() - 6);
   }
+  bool finished(std::size_t run) const { return text(run, "status") == "finished"; }
   /// Of run 1, 2, ...
   std::optional<double> error(std::size_t run, std::size_t reference) const { return value(run, reference); }
   std::optional<double> tolerance(std::size_t run, std::size_t reference) const {
@@ -164,8 +165,10 @@ std::string html_table(const Rows& rows) {
 }
 
 std::string machine_text(const MachineReport& machine) {
-  return fmt::format("{}, {} cores, {} threads; shoal {}; {}", machine.processor, machine.cores,
-                     machine.threads, machine.version, machine.date);
+  std::string text = fmt::format("{}, {} cores, {} threads; shoal {}; {}", machine.processor, machine.cores,
+                                 machine.threads, machine.version, machine.date);
+  if (!machine.within.empty()) text += "; each case within " + machine.within;
+  return text;
 }
 
 // How far the runs are from each reference.
@@ -187,15 +190,41 @@ Rows errors(const CaseReport& report) {
   return rows;
 }
 
+// The last word of a key, in limits.csv.
+std::string last_word(const std::string& key) { return key.substr(key.rfind('.') + 1); }
+
+// How far time steps can be raised, as limits.csv says.
+Rows limits(const CaseReport& report) {
+  if (report.limits.size() < 2) return {};
+  Rows rows{{"longest stable steps", "default", "holds to", "fails at", "why"}};
+  for (std::size_t k = 1; k < report.limits.size(); ++k) {
+    rows.push_back(report.limits[k]);
+    rows.back()[0] = last_word(rows.back()[0]);
+  }
+  return rows;
+}
+
+// "acoustic_cfl 0.8 (0.6)"; a factor at which nothing failed is marked.
+std::string limits_text(const CaseReport& report) {
+  std::string text;
+  for (const auto& row : limits(report)) {
+    if (row[0] == "longest stable steps") continue;
+    text += fmt::format("{}{} {}{} ({})", text.empty() ? "" : ", ", row[0],
+                        row[3].empty() && !row[2].empty() ? "at least " : "", row[2].empty() ? "?" : row[2],
+                        row[1]);
+  }
+  return text;
+}
+
 // The best run of each case on one line: that whose hardest reference is met best.
 Rows overview(const std::vector<CaseReport>& cases) {
   Rows rows{{"case", "what", "runs", "largest error", "tolerance", "of reference", "order", "wall time",
-             "bytes per particle"}};
+             "bytes per particle", "steps hold to (default)"}};
   for (const CaseReport& report : cases) {
     auto& row = rows.emplace_back(std::vector<std::string>{report.area + "/" + report.name, report.title});
     const StudyTable table(report.table);
     if (table.runs() == 0) {
-      row.insert(row.end(), {"0", report.failure, "", "", "", "", ""});
+      row.insert(row.end(), {"0", report.failure, "", "", "", "", "", ""});
       continue;
     }
     row.push_back(std::to_string(table.runs()));
@@ -210,10 +239,14 @@ Rows overview(const std::vector<CaseReport>& cases) {
       row.insert(row.end(),
                  {table.text(run, r), table.text(run, r + 1), table.name(r), table.text(run, r + 2)});
     } else {
-      row.insert(row.end(), {table.references().empty() ? "no reference" : "not all compared", "", "", ""});
+      row.insert(row.end(), {!table.finished(run)         ? table.text(run, "status")
+                             : table.references().empty() ? "no reference"
+                                                          : "not all compared",
+                             "", "", ""});
     }
     row.push_back(table.text(run, "wall_time [s]"));
     row.push_back(table.text(run, "bytes_per_particle [byte]"));
+    row.push_back(limits_text(report));
   }
   return rows;
 }
@@ -240,7 +273,7 @@ std::string markdown_page(const MachineReport& machine, const std::vector<CaseRe
     if (!report.what.empty()) text += report.what + "\n\n";
     text += "Plugins: " + report.plugins + ".\n\n";
     if (!report.failure.empty()) text += "**" + report.failure + "**\n\n";
-    for (const Rows& rows : {errors(report), costs(report)})
+    for (const Rows& rows : {errors(report), costs(report), limits(report)})
       if (!rows.empty()) text += markdown_table(rows) + "\n";
     for (const auto& [name, svg] : report.pictures)
       text += fmt::format("![{}]({})\n", heading(name), picture_file(report, name));
@@ -260,7 +293,7 @@ std::string html_page(const MachineReport& machine, const std::vector<CaseReport
     text += fmt::format("<h2>{}/{}: {}</h2>\n<p>{}</p>\n<p>Plugins: {}.</p>\n", report.area, report.name,
                         escaped(report.title), escaped(report.what), escaped(report.plugins));
     if (!report.failure.empty()) text += "<p><strong>" + escaped(report.failure) + "</strong></p>\n";
-    for (const Rows& rows : {errors(report), costs(report)})
+    for (const Rows& rows : {errors(report), costs(report), limits(report)})
       if (!rows.empty()) text += html_table(rows);
     for (const auto& [name, svg] : report.pictures)
       text += svg.substr(std::min(svg.find("<svg"), svg.size())) + "\n";

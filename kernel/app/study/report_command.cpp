@@ -99,6 +99,7 @@ MachineReport this_machine(const Options& options) {
   char date[32];
   std::strftime(date, sizeof date, "%Y-%m-%d", &parts);
   machine.date = date;
+  machine.within = options.within;
   return machine;
 }
 
@@ -117,14 +118,18 @@ void study(const Options& options, const std::filesystem::path& results, CaseRep
     arguments.insert(arguments.end(), {"--plugin-path", path.string()});
   if (options.threads > 0) arguments.insert(arguments.end(), {"--threads", std::to_string(options.threads)});
   if (options.force) arguments.emplace_back("--force");
+  if (options.limits) arguments.emplace_back("--limits");
+  if (!options.within.empty()) arguments.insert(arguments.end(), {"--within", options.within});
   make_folder(results.parent_path());
   const std::filesystem::path log = results.string() + ".log";
-  const int code = run_program(this_program(), arguments, log);
+  const int code = run_program(this_program(), arguments, log).code;
   if (code != exit_done && code != exit_interrupted)
     report.failure = fmt::format("The study ended with exit code {} ({}).", code,
                                  code == exit_physics_failed ? "a run failed" : "see " + log.string());
   if (!std::filesystem::exists(results / "study.csv")) return;
   report.table = read_csv(read_whole_file(results / "study.csv"));
+  if (options.limits && std::filesystem::exists(results / "limits.csv"))
+    report.limits = read_csv(read_whole_file(results / "limits.csv"));
   for (const char* picture : {"error_against_spacing", "error_against_time"}) {
     const std::filesystem::path file = results / (std::string(picture) + ".svg");
     if (std::filesystem::exists(file)) report.pictures.emplace_back(picture, read_whole_file(file));

@@ -34,6 +34,8 @@ void fill(StudyResult& result, const Json& summary) {
   result.spacing = smallest_spacing(summary.at("bodies"));
   result.particles = summary.at("particles").get<std::uint64_t>();
   result.outer_steps = summary.at("outer_steps").get<std::uint64_t>();
+  const Json& time = summary.at("time");
+  result.reached = number(time.at("reached")) / number(time.at("end"));
   const Json& cost = summary.at("cost");
   result.wall_seconds = number(cost.at("wall_seconds")) + number(cost.at("earlier_wall_seconds"));
   result.particle_steps_per_second = number(cost.at("particle_steps_per_second"));

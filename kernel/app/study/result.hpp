@@ -23,9 +23,12 @@ struct StudyError {
 
 struct StudyResult {
   StudyRun run;
-  std::string status;    ///< finished, failed, ... as in summary.json; "no result" without one
-  std::string why;       ///< of a run that did not finish
-  double spacing = 0.0;  ///< smallest of all bodies that move (or of all, if none does), m
+  std::string status;        ///< finished, failed, ... as in summary.json; "no result" without one;
+                             ///< "stopped at 35 %" or "left out" where no wall time was left
+  std::string why;           ///< of a run that did not finish
+  double reached = 0.0;      ///< share of the simulated time
+  bool out_of_time = false;  ///< it was stopped, or not begun, since no wall time was left
+  double spacing = 0.0;      ///< smallest of all bodies that move (or of all, if none does), m
   std::uint64_t particles = 0, outer_steps = 0, peak_memory = 0;
   double bytes_per_particle = 0.0;
   double wall_seconds = 0.0;  ///< of all sessions of the run

@@ -39,12 +39,15 @@ struct LeastSquares final : Physics {
       between(1e-4, 0.5),
       default_to(0.05),
       example("2.5*dx/L")};
-  Param<double> advection_cfl{"advection_cfl", "1", "Advection step over h / |v|.", positive,
-                              default_to(0.25)};
+  Param<double> advection_cfl{
+      "advection_cfl", "1", "Advection step over h / |v|.", positive, default_to(0.25), scales_time_step};
   Param<double> acoustic_cfl{
-      "acoustic_cfl", "1",
-      "Largest acoustic step over h / c. It is shorter where the stiffest fit asks for it.", positive,
-      default_to(0.6)};
+      "acoustic_cfl",
+      "1",
+      "Largest acoustic step over h / c. It is shorter where the stiffest fit asks for it.",
+      positive,
+      default_to(0.6),
+      scales_time_step};
   Param<double> viscous_number{"viscous_number", "1",
                                "Largest advection step over h^2 / nu, for accuracy: it is stable beyond.",
                                positive, default_to(1.0)};

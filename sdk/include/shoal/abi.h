@@ -29,7 +29,7 @@ extern "C" {
 #endif
 
 #define SHOAL_ABI_MAJOR 1u
-#define SHOAL_ABI_MINOR 2u
+#define SHOAL_ABI_MINOR 3u
 #define SHOAL_ABI_MAGIC UINT64_C(0x494241204c414f48) /* the bytes "HOAL ABI" */
 
 // Whether the object that `pointer` points to is large enough to hold `member`.
@@ -114,7 +114,10 @@ enum {
   SHOAL_PARAMETER_MINIMUM_EXCLUDED = 1u << 4,  // value > minimum, else value >= minimum
   SHOAL_PARAMETER_MAXIMUM_EXCLUDED = 1u << 5,
   SHOAL_PARAMETER_NAMES =
-      1u << 6  // an expression may use names that the case does not know: the plugin's own
+      1u << 6,  // an expression may use names that the case does not know: the plugin's own
+  // A number in proportion to which time steps grow, and which makes the scheme fail beyond some value: what
+  // `shoal study --limits` raises (since 1.3)
+  SHOAL_PARAMETER_STEP_FACTOR = 1u << 7
 };
 
 typedef struct shoal_parameter {

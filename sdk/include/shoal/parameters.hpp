@@ -129,6 +129,10 @@ inline constexpr Optional optional{};
 struct OwnNames {};
 inline constexpr OwnNames own_names{};
 
+// Time steps grow in proportion to the number, and beyond some value the scheme fails: `shoal study --limits` finds it.
+struct ScalesTimeStep {};
+inline constexpr ScalesTimeStep scales_time_step{};
+
 struct Choices {
   std::vector<const char*> words;
 };
@@ -171,6 +175,7 @@ class ParameterBase {
   void apply(Example text) { description_.example = text.text; }
   void apply(Optional) { optional_ = true; }
   void apply(OwnNames) { description_.flags |= SHOAL_PARAMETER_NAMES; }
+  void apply(ScalesTimeStep) { description_.flags |= SHOAL_PARAMETER_STEP_FACTOR; }
   void apply(Choices choices) { choices_ = std::move(choices.words); }
   void apply(ObjectsOf objects) { description_.object_kind = objects.kind; }
 

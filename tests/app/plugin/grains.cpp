@@ -81,6 +81,9 @@ class Falling : public Physics {
   Param<double> damping{"damping", "1/s", "Rate at which velocities decay.", non_negative, default_to(0.0)};
   Param<double> floor{"floor", "m", "Height of the floor.", default_to(0.0)};
   Param<double> longest_step{"longest_step", "s", "No step is longer.", positive, default_to(1e-3)};
+  Param<double> step_factor{
+      "step_factor",   "1", "Longest step over 1 / damping. Stable below 2.", positive, default_to(1.0),
+      scales_time_step};
   Param<double> breakdown{"breakdown", "s", "From then on a velocity is not a number.", optional};
 
   void build(const Builder& builder) const {
@@ -108,7 +111,8 @@ class Falling : public Physics {
     builder.attach<Move>("grains.move", {"motion", "move"}, target, [&](Move& op) {
       op.damping = damping;
       op.floor = floor;
-      op.longest_step = longest_step;
+      op.longest_step =
+          damping > 0.0 ? std::min(longest_step.value(), step_factor / damping) : longest_step.value();
       op.breakdown = breakdown.value_or(std::numeric_limits<double>::infinity());
     });
     builder.attach<KineticEnergy>(

@@ -134,6 +134,12 @@ TEST_CASE("defaults, units and bounds that are not") {
   shoal_parameter p = parameter(SHOAL_TEXT, "a", nullptr);
   p.flags = SHOAL_PARAMETER_HAS_MINIMUM;
   CHECK(problems_of(p) == one("a text has no bounds"));
+  for (const auto& [kind, list] :
+       {std::pair{SHOAL_VECTOR, 0u}, std::pair{SHOAL_REAL, 1u * SHOAL_PARAMETER_LIST}}) {
+    p = parameter(kind, "a", "1");
+    p.flags = SHOAL_PARAMETER_STEP_FACTOR | list;
+    CHECK(problems_of(p) == one("only a single number can be a factor of time steps"));
+  }
   p = parameter(SHOAL_REAL, "a", "m");
   p.flags = SHOAL_PARAMETER_MAXIMUM_EXCLUDED;
   CHECK(problems_of(p) == one("a bound is excluded that is not there"));

@@ -164,6 +164,7 @@ class Law {
       const std::size_t components = list[k].rank == SHOAL_SCALAR        ? 1
                                      : list[k].rank == SHOAL_RANK_VECTOR ? d()
                                                                          : d() * (d() + 1) / 2;
+      fields_[k].reserve(n * components + SHOAL_PADDING);  // packs may read behind the last particle
       fields_[k].resize(n * components, 0.0);
     }
     const std::vector<double> position(n * d(), 0.0);
@@ -240,6 +241,7 @@ class Law {
   }
   std::vector<double> flatten(const std::vector<Matrix>& F) const {
     std::vector<double> flat;
+    flat.reserve(F.size() * d() * d() + SHOAL_PADDING);
     for (const Matrix& f : F)
       for (std::size_t r = 0; r < d(); ++r)
         for (std::size_t c = 0; c < d(); ++c) flat.push_back(f(Eigen::Index(r), Eigen::Index(c)));
