@@ -87,7 +87,7 @@ TEST_CASE("another major is refused before its code runs, with both versions and
   const LoadFailure failure = failure_of("newer_major");
   CHECK(failure.problem() == LoadProblem::abi_major);
   CHECK(said(failure) ==
-        "was built for version 2.3 of the plugin interface, this Shoal has version 1.2; rebuild it: cmake -S "
+        "was built for version 2.3 of the plugin interface, this Shoal has version 1.3; rebuild it: cmake -S "
         "SOURCES_OF_newer_major -B build && cmake --build build --clean-first");
   REQUIRE(failure.notes().size() == 1);
   CHECK(failure.notes()[0] == "it was made with SDK 9.8.7 and test compiler 1");
