@@ -63,36 +63,69 @@ std::string runaway_probe(const StudyResult& standard, const std::filesystem::pa
   return {};
 }
 
-// Raises one factor until a run fails.
-Limit find_limit(CaseRunner& runner, const StepFactor& factor, const StudyResult& standard,
-                 const RunRequest& base, const std::filesystem::path& folder) {
+// The runs of one factor, each of them asked for once.
+class FactorRuns {
+ public:
+  FactorRuns(CaseRunner& runner, const StepFactor& factor, const StudyResult& standard,
+             const RunRequest& base, std::filesystem::path folder)
+      : runner_(runner),
+        factor_(factor),
+        standard_(standard),
+        base_(base),
+        folder_(std::move(folder)),
+        runs_(matrix({Variation{factor.key, raised_values(factor)}})) {}
+
+  std::size_t size() const { return runs_.size(); }
+  const std::string& value(std::size_t k) const { return runs_[k].values[0]; }
+
+  /// Why run k failed; empty if it holds. Nothing if it cannot be known.
+  std::optional<std::string> failure(std::size_t k) {
+    if (interrupted()) return unknown("interrupted");
+    RunRequest request{runs_[k], base_.settings, folder_ / factor_.key / runs_[k].name, "limit  "};
+    request.settings.push_back(factor_.key + "=" + value(k));
+    const StudyResult result = runner_.run(request);
+    if (result.out_of_time || result.status == "interrupted")
+      return unknown(fmt::format("{}: {}, {}", value(k), result.status, result.why));
+    return failure_of(result, request.folder, standard_, base_.folder);
+  }
+  const std::string& why_unknown() const { return why_unknown_; }
+
+ private:
+  std::nullopt_t unknown(const std::string& why) {
+    why_unknown_ = why;
+    return std::nullopt;
+  }
+
+  CaseRunner& runner_;
+  const StepFactor& factor_;
+  const StudyResult& standard_;
+  const RunRequest& base_;
+  std::filesystem::path folder_;
+  std::vector<StudyRun> runs_;
+  std::string why_unknown_;
+};
+
+// Halves the values between one that holds and one that fails.
+Limit find_limit(const StepFactor& factor, FactorRuns& runs) {
   Limit limit{factor, significant(factor.standard, 4), "", ""};
-  const std::vector<std::string> values = raised_values(factor);
-  if (values.empty()) {
-    limit.why = "the largest that is allowed";
-    return limit;
-  }
-  for (const StudyRun& run : matrix({Variation{factor.key, values}})) {
-    if (interrupted()) {
-      limit.why = "interrupted";
-      return limit;
-    }
-    RunRequest request{run, base.settings, folder / factor.key / run.name, "limit  "};
-    request.settings.push_back(factor.key + "=" + run.values[0]);
-    const StudyResult result = runner.run(request);
-    if (result.out_of_time || result.status == "interrupted") {
-      limit.why = fmt::format("{}: {}, {}", run.values[0], result.status, result.why);
-      return limit;
-    }
-    limit.why = failure_of(result, request.folder, standard, base.folder);
-    if (!limit.why.empty()) {
-      limit.fails_at = run.values[0];
-      return limit;
-    }
-    limit.holds_to = run.values[0];
-  }
   const bool bounded = factor.largest && *factor.largest <= largest_ratio * factor.standard;
   limit.why = bounded ? "the largest that is allowed" : "the largest that was tried";
+  std::size_t n_holding = 0, failing = runs.size();  // those before the first hold; that of the second fails
+  for (std::size_t next = runs.size(); n_holding < failing; next = (n_holding + failing + 1) / 2) {
+    const std::optional<std::string> failure = runs.failure(next - 1);
+    if (!failure) {
+      limit.why = runs.why_unknown();
+      return limit;
+    }
+    if (failure->empty()) {
+      n_holding = next;
+      limit.holds_to = runs.value(next - 1);
+    } else {
+      failing = next - 1;
+      limit.fails_at = runs.value(next - 1);
+      limit.why = *failure;
+    }
+  }
   return limit;
 }
 
@@ -164,9 +197,11 @@ std::vector<Limit> find_limits(CaseRunner& runner, const std::vector<StepFactor>
   std::vector<Limit> limits;
   if (factors.empty() || interrupted()) return limits;
   const StudyResult result = runner.run(standard);
-  for (const StepFactor& factor : factors)
-    limits.push_back(result.finished() ? find_limit(runner, factor, result, standard, folder)
+  for (const StepFactor& factor : factors) {
+    FactorRuns runs(runner, factor, result, standard, folder);
+    limits.push_back(result.finished() ? find_limit(factor, runs)
                                        : Limit{factor, "", "", "as it stands: " + result.why});
+  }
   return limits;
 }
 

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: The Shoal authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The longest stable time steps of a case: each factor of time steps that its physics declares is raised by tenths
-// from where it stands until a run fails. A run has failed if
+// The longest stable time steps of a case: each factor of time steps that its physics declares is raised from where it
+// stands, in steps of a tenth, to three times that at most. Of two neighbouring values the first holds and the second
+// fails; they are found by halving, so not every smaller value has run. A run has failed if
 //
 //   it does not end:           NaN, escape, a value that the physics guards, a collapsed time step, an error; or
 //   a reference is missed:     its error exceeds both the tolerance and twice that of the case as it stands; or
 //   another probe runs away:   it is not a number, or exceeds twice its largest magnitude in the case as it stands.
-//
-// Steps are raised to three times the default at most.
 #pragma once
 
 #include <optional>
@@ -32,7 +31,7 @@ std::vector<StepFactor> declared_step_factors(const CaseModel& model);
 /// --limit KEY, of those declared, or KEY=VALUE. Throws UserError.
 StepFactor read_step_factor(const std::string& text, const std::vector<StepFactor>& declared);
 
-/// The values that are tried after the standard one, in their order.
+/// The values that may be tried after the standard one, in their order.
 std::vector<std::string> raised_values(const StepFactor& factor);
 
 struct Limit {
