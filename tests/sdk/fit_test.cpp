@@ -35,6 +35,7 @@ Body disordered(int dimensions, int n, unsigned seed) {
 }
 
 struct Derivatives : PairOperator<Derivatives> {
+  static constexpr bool row_by_row = true;
   template <int D>
   using Kernel = FitKernel<D>;
 

@@ -85,6 +85,8 @@ struct Departure : ParticleOperator<Departure> {
 
 // Gradients at the midpoint, and the fields carried along the shift.
 struct Carry : PairOperator<Carry> {
+  static constexpr bool row_by_row = true;
+
   template <int D>
   using Kernel = Weight<D>;
 

@@ -42,6 +42,8 @@ inline constexpr const char *source_doc = "Source of the pressure's wave equatio
 
 // Source and initial rate of the wave equation.
 struct WaveSource : PairOperator<WaveSource> {
+  static constexpr bool row_by_row = true;
+
   template <int D>
   using Kernel = Weight<D>;
 
@@ -126,6 +128,8 @@ struct WaveStep : ParticleOperator<WaveStep> {
 
 // Mean acceleration by pressure.
 struct PressureForce : PairOperator<PressureForce> {
+  static constexpr bool row_by_row = true;
+
   template <int D>
   using Kernel = Weight<D>;
 

@@ -113,6 +113,8 @@ struct ViscousStage : ParticleOperator<ViscousStage> {
 
 // The viscous force without the leading error of the Laplacian, and with the forces of `acceleration`.
 struct ViscousForce : PairOperator<ViscousForce> {
+  static constexpr bool row_by_row = true;
+
   template <int D>
   using Kernel = Weight<D>;
 

@@ -16,6 +16,7 @@
 //
 //     struct Gradient : PairOperator<Gradient> {
 //       template <int D> using Kernel = FitKernel<D>;           // the same weight as the fit, and the same h
+//       static constexpr bool row_by_row = true;                // p.i(fit) are numbers of one particle
 //       In<FitGradient> fit{"fit", unit("1"), doc("..."), own_only};
 //       auto pair(const auto& p) const { return (p.j(f) - p.i(f)) * fit_gradient(p, p.i(fit)); }
 //

@@ -73,6 +73,13 @@ struct Pack {
   /// Reads `lanes` doubles; no alignment is needed.
   static Pack load(const double* p) { return from_raw(simd::load(p)); }
   void store(double* p) const { simd::store(p, v); }
+  /// f(0), f(1), ... in the lanes.
+  template <class F>
+  static Pack from(F&& f) {
+    alignas(64) double x[simd::lanes];
+    for (int k = 0; k < simd::lanes; ++k) x[k] = f(k);
+    return load(x);
+  }
 
   double operator[](int lane) const { return simd::get_lane(v, lane); }
   void set(int lane, double x) { simd::set_lane(v, lane, x); }
@@ -174,6 +181,21 @@ inline void gather_tuple(const double* base, IndexPack index, Pack* out) {
     simd::gather_tuple<n, Stride>(base, index.lane, raw);
     for (int k = 0; k < n; ++k) out[k] = Pack::from_raw(raw[k]);
     if constexpr (N > n) gather_tuple<N - n, Stride>(base + n, index, out + n);
+  }
+}
+
+/// p[lane * N + k], k = 0 ... N - 1, in each lane: numbers that follow one another. May read one number behind the last.
+template <int N>
+inline void load_tuple(const double* p, Pack* out) {
+  if constexpr (N == 1) {
+    out[0] = Pack::load(p);
+  } else if constexpr (N == 2) {
+    simd::Raw raw[2];
+    simd::load_pairs(p, raw);
+    for (int k = 0; k < 2; ++k) out[k] = Pack::from_raw(raw[k]);
+  } else {
+    static constexpr std::uint32_t one_after_another[] = {0, 1, 2, 3, 4, 5, 6, 7};
+    gather_tuple<N>(p, IndexPack{one_after_another}, out);
   }
 }
 

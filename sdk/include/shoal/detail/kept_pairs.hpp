@@ -99,6 +99,42 @@ struct Reader<Sums<Values...>> {
     return {std::tuple<Values...>{next(std::type_identity<Values>{})...}};  // in order, as braces demand
   }
 };
+// One lane of what `put` wrote of packs, at `place` of that lane.
+template <class T>
+struct LaneReader;
+template <>
+struct LaneReader<Pack> {
+  static double get(const double* place) { return *place; }
+};
+template <int D>
+struct LaneReader<Vec<D, Pack>> {
+  static Vec<D> get(const double* place) {
+    Vec<D> value;
+    for (int k = 0; k < D; ++k) value[k] = place[k * lanes];
+    return value;
+  }
+};
+template <int D>
+struct LaneReader<Mat<D, Pack>> {
+  static Mat<D> get(const double* place) {
+    Mat<D> value;
+    for (int k = 0; k < D * D; ++k) value[k] = place[k * lanes];
+    return value;
+  }
+};
+template <class... Values>
+struct LaneReader<Sums<Values...>> {
+  static auto get(const double* place) {
+    const auto next = [&]<class V>(std::type_identity<V>) {
+      const auto value = LaneReader<V>::get(place);
+      place += lanes * numbers<V>;
+      return value;
+    };
+    using Result = Sums<decltype(LaneReader<Values>::get(place))...>;
+    return Result{std::tuple{next(std::type_identity<Values>{})...}};  // in order, as braces demand
+  }
+};
+
 template <class T>
 T get(const double* place) {
   return Reader<T>::get(place);

@@ -97,6 +97,34 @@ inline Raw gather(const double* base, RawIndex index) {
   return _mm512_mask_i32gather_pd(zero, all, scaled, base, 8);
 }
 
+// p[2 lane + k] in lane of out[k].
+inline void load_pairs(const double* p, Raw* out) {
+  const Raw a = load(p), b = load(p + lanes);
+  out[0] = __builtin_shufflevector(a, b, 0, 2, 4, 6, 8, 10, 12, 14);
+  out[1] = __builtin_shufflevector(a, b, 1, 3, 5, 7, 9, 11, 13, 15);
+}
+
+// columns[c * lanes + lane] = row[lane][c]
+inline void transpose(const std::uint32_t* const* row, std::uint32_t* columns) {
+  __m256i a[8], b[8];
+  for (int k = 0; k < 8; ++k) a[k] = load_index(row[k]);
+  for (int k = 0; k < 8; k += 2) {
+    b[k] = _mm256_unpacklo_epi32(a[k], a[k + 1]);
+    b[k + 1] = _mm256_unpackhi_epi32(a[k], a[k + 1]);
+  }
+  for (int k = 0; k < 8; k += 4) {
+    a[k] = _mm256_unpacklo_epi64(b[k], b[k + 2]);
+    a[k + 1] = _mm256_unpackhi_epi64(b[k], b[k + 2]);
+    a[k + 2] = _mm256_unpacklo_epi64(b[k + 1], b[k + 3]);
+    a[k + 3] = _mm256_unpackhi_epi64(b[k + 1], b[k + 3]);
+  }
+  for (int k = 0; k < 4; ++k) {
+    auto* out = reinterpret_cast<__m256i*>(columns + 8 * k);
+    _mm256_store_si256(out, _mm256_permute2x128_si256(a[k], a[k + 4], 0x20));
+    _mm256_store_si256(out + 4, _mm256_permute2x128_si256(a[k], a[k + 4], 0x31));
+  }
+}
+
 // Numbers that lie together are read together and transposed, at less than half the cost of gathering each. [a] is
 // the `N`-tuple of lane a; pairs of lanes a, a + 4 share a register.
 template <int N, int Stride>
@@ -207,6 +235,19 @@ inline Raw gather(const double* base, RawIndex index) {
   return _mm256_setr_pd(base[std::size_t{x[0]} * Stride], base[std::size_t{x[1]} * Stride],
                         base[std::size_t{x[2]} * Stride], base[std::size_t{x[3]} * Stride]);
 #endif
+}
+
+// p[2 lane + k] in lane of out[k].
+inline void load_pairs(const double* p, Raw* out) {
+  const Raw a = load(p), b = load(p + lanes);
+  out[0] = __builtin_shufflevector(a, b, 0, 2, 4, 6);
+  out[1] = __builtin_shufflevector(a, b, 1, 3, 5, 7);
+}
+
+// columns[c * lanes + lane] = row[lane][c]
+inline void transpose(const std::uint32_t* const* row, std::uint32_t* columns) {
+  for (int lane = 0; lane < lanes; ++lane)
+    for (int c = 0; c < lanes; ++c) columns[c * lanes + lane] = row[lane][c];
 }
 
 template <int N, int Stride>
@@ -351,6 +392,17 @@ inline Raw gather(const double* base, RawIndex index) {
   const auto at = [&](int k) { return base[std::size_t{index.lane[k]} * Stride]; };
   return {{Double2{at(0), at(1)}, Double2{at(2), at(3)}}};
 }
+// p[2 lane + k] in lane of out[k].
+inline void load_pairs(const double* p, Raw* out) {
+  for (int k = 0; k < 2; ++k) out[k] = {{Double2{p[k], p[2 + k]}, Double2{p[4 + k], p[6 + k]}}};
+}
+
+// columns[c * lanes + lane] = row[lane][c]
+inline void transpose(const std::uint32_t* const* row, std::uint32_t* columns) {
+  for (int lane = 0; lane < lanes; ++lane)
+    for (int c = 0; c < lanes; ++c) columns[c * lanes + lane] = row[lane][c];
+}
+
 template <int N, int Stride>
 inline void gather_tuple(const double* base, const std::uint32_t* j, Raw* out) {
   for (int k = 0; k < N; ++k) out[k] = gather<Stride>(base + k, load_index(j));
