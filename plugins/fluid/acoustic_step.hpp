@@ -10,8 +10,17 @@
 //   p = p_eos(rho^(n+1/2)) + zeta (-rho div v)^n,    zeta = A c h
 // whose second part is a bulk viscosity: it damps sound, whatever its wavelength, at the rate A c h k^2 / 2, and does
 // nothing to an incompressible flow (compare the acoustic damper of Sun et al. 2023).
-// Stable for dt <= 0.6 h / (c + |v|_max) with the low-dissipation Riemann solver.
+//
+// Stability. The shortest sound waves that pairs resolve have a wave number kappa / h: kappa^2 = 1.4 in the interior (of a
+// lattice, h = 1.3 dx: 1.29 in 2D, 1.36 in 3D), 2.25 where walls reflect them (measured on hydrostatic_2d). Per step their
+// phase is C kappa, C = dt c / h, and their damping, one step late, A C kappa^2:
+//   C^2 kappa^2 + 2 A C kappa^2 < 4,    C < sqrt(A^2 + 4 / kappa^2) - A
+// What dissipates jumps of the pressure, B times the Riemann solver's, shrinks a checkerboard at the rate 3 B c / h:
+//   C < 2 / (3 B)
 #pragma once
+
+#include <algorithm>
+#include <cmath>
 
 #include "shoal/interfaces/equation_of_state.h"
 #include "shoal/particle_operator.hpp"
@@ -22,6 +31,13 @@
 namespace shoal::fluid {
 
 using EquationOfState = Interface<shoal_equation_of_state>;
+
+// The largest C = dt c / h for a damping A and dissipation B of pressure jumps (0: none).
+inline double longest_acoustic_step(double damping, double dissipation, bool walls) {
+  const double kappa_squared = walls ? 2.25 : 1.4;
+  const double sound = std::sqrt(damping * damping + 4.0 / kappa_squared) - damping;
+  return std::min(sound, 2.0 / std::max(1e-3, 3.0 * dissipation));
+}
 
 // Half a step of density and position; pressure and volume from the new density.
 struct AcousticPredictor : ParticleOperator<AcousticPredictor> {
@@ -38,8 +54,8 @@ struct AcousticPredictor : ParticleOperator<AcousticPredictor> {
 
   EquationOfState equation_of_state;
   double sound_speed = 0;  // m/s
-  double cfl = 0.6;
-  double damping = 0;  // A
+  double cfl = 0.9;        // over h / (c + |v|)
+  double damping = 0;      // A
 
   void block(std::uint64_t begin, std::uint64_t end) const {
     const double half = 0.5 * dt();

@@ -95,6 +95,7 @@ struct WallVelocityDivergenceOf : PairOperator<WallVelocityDivergenceOf<Correcte
 
   double sound_speed = 0;  // m/s
   double limiter = 3.0;
+  double most = 1.0;          // B of riemann.hpp
   double gradient_scale = 1;  // 1 / slope of lattice_sums()
 
   auto pair(const auto& p) const {
@@ -102,7 +103,7 @@ struct WallVelocityDivergenceOf : PairOperator<WallVelocityDivergenceOf<Correcte
     const auto n = towards(p.r_ij(), p.j(wall_normal));
     const auto v_n = 2.0 * dot(p.i(velocity) - p.j(wall_velocity), n);  // (v_i - v_w').n
     const auto approach = max(0.0, -v_n);
-    const auto beta = min(1.0, (limiter / sound_speed) * approach);
+    const auto beta = min(most, (limiter / sound_speed) * approach);
     const auto dissipation = (weight * p.r() * beta * approach) * n;
     if constexpr (Corrected)
       return sums(weight * v_n * dot(n, p.i(matrix) * p.r_ij()), dissipation);
@@ -134,6 +135,7 @@ struct WallForceOf : PairOperator<WallForceOf<Corrected>> {
   double sound_speed = 0;        // m/s
   double viscosity = 0;          // Pa s; 0 on free-slip walls
   double limiter = 3.0;
+  double most = 1.0;          // B of riemann.hpp
   double gradient_scale = 1;  // 1 / slope of lattice_sums()
   double touching = -1e300;   // m, as of WallPressureForce
 
@@ -147,7 +149,7 @@ struct WallForceOf : PairOperator<WallForceOf<Corrected>> {
     const auto v = p.j(velocity) - p.i(velocity);
     const auto approach = max(0.0, -2.0 * dot(v, n));
     const auto impact =
-        reference_density * sound_speed * approach * min(1.0, (limiter / sound_speed) * approach);
+        reference_density * sound_speed * approach * min(most, (limiter / sound_speed) * approach);
     const auto shear = 2.0 * viscosity * no_slip_factor(-dot(n, p.r_ij()), p.i(wall_distance)) * p.r() /
                        (p.r() + 0.01 * p.h());
     const auto smooth = weight * gradient_scale * (impact * p.r() * n - shear * v);

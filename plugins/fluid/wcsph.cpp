@@ -155,6 +155,8 @@ struct FluidBody {
       op.viscosity = viscosity;
       op.gradient_scale = 1.0 / lattice.slope;
       if constexpr (requires { op.reference_density; }) op.reference_density = density;
+      if constexpr (requires { op.longest_step; })
+        op.longest_step = no_slip_walls.empty() ? Force::longest_step_in_the_open : 0.125;
     };
     b.attach<Force>("fluid.viscous_force", at_forces, itself(), setup);
     if (!no_slip_walls.empty())
@@ -168,6 +170,7 @@ struct FluidBody {
       op.reference_density = density;
       op.sound_speed = sound_speed;
       op.gradient_scale = 1.0 / lattice.slope;
+      if constexpr (requires { op.dissipation; }) op.dissipation = largest_dissipation();
       if constexpr (requires { op.diffusivity; }) {
         const double ch = sound_speed * itself().smoothing_length;
         op.diffusivity = kind == "edac" ? physics.diffusion.value_or(0.5) * ch / 8.0
@@ -187,12 +190,23 @@ struct FluidBody {
     if (kind == "none") attach.template operator()<DiffusivePressureForce<Diffusion::none, Corrected>>();
   }
 
+  // B of riemann.hpp.
+  double largest_dissipation() const {
+    return std::max(physics.largest_dissipation.value(), physics.least_dissipation.value());
+  }
+  // Other stabilisations diffuse pressure less than acoustic steps bear.
+  double longest_step() const {
+    return longest_acoustic_step(physics.acoustic_damping,
+                                 physics.stabilisation.value() == "riemann" ? largest_dissipation() : 0.0,
+                                 has_walls());
+  }
+
   template <bool Corrected>
   void attach_acoustic() const {
     b.attach<AcousticPredictor>("fluid.predict", at_predict, itself(), [&](auto& op) {
       op.equation_of_state = equation_of_state;
       op.sound_speed = sound_speed;
-      op.cfl = physics.acoustic_cfl;
+      op.cfl = physics.acoustic_cfl * longest_step();
       op.damping = physics.acoustic_damping;
     });
     attach_pressure_force<Corrected>();
@@ -208,6 +222,7 @@ struct FluidBody {
     const auto riemann = [&](auto& op) {
       op.sound_speed = sound_speed;
       op.limiter = physics.dissipation_limiter;
+      op.most = largest_dissipation();
       op.gradient_scale = 1.0 / lattice.slope;
     };
     if (physics.stabilisation.value() == "riemann")
@@ -245,6 +260,7 @@ struct FluidBody {
             op.sound_speed = sound_speed;
             op.viscosity = sticks ? viscosity : 0.0;
             op.limiter = physics.dissipation_limiter;
+            op.most = largest_dissipation();
             op.gradient_scale = 1.0 / lattice.slope;
             if (physics.free_surface) op.touching = 0.25 * itself().spacing;
           },

@@ -53,8 +53,8 @@ struct Wcsph final : Physics {
       between(0.0, 1.0), default_to(0.05)};
   Param<double> acoustic_damping{"acoustic_damping", "1",
                                  "Bulk viscosity over rho c h, which damps sound and leaves incompressible "
-                                 "flow alone. Stable below 1.5.",
-                                 non_negative, default_to(0.5)};
+                                 "flow alone. The acoustic step is the shorter the larger it is.",
+                                 non_negative, default_to(0.3)};
   Param<double> velocity_filter{"velocity_filter",
                                 "1",
                                 "Strength of the filter that damps what particles do beyond the smooth flow "
@@ -100,7 +100,13 @@ struct Wcsph final : Physics {
   Param<double> advection_cfl{
       "advection_cfl", "1", "Advection step over h / |v|.", positive, default_to(0.25), scales_time_step};
   Param<double> acoustic_cfl{
-      "acoustic_cfl", "1", "Acoustic step over h / (c + |v|).", positive, default_to(0.6), scales_time_step};
+      "acoustic_cfl",
+      "1",
+      "Acoustic step over the longest that sound and what damps it bear: h / (c + |v|), and 1.4 times that "
+      "without walls, less where acoustic_damping or largest_dissipation are raised.",
+      positive,
+      default_to(0.88),
+      scales_time_step};
   Param<double> dissipation_limiter{
       "dissipation_limiter", "1",
       "Factor eta of the Riemann solver's limiter min(eta (u_L - u_R) / c, 1); larger damps more.",
@@ -110,6 +116,11 @@ struct Wcsph final : Physics {
       "Smallest factor of the Riemann solver's dissipation, from 0 (the limiter alone) to "
       "1 (an upwind scheme).",
       between(0.0, 1.0), default_to(0.0)};
+  Param<double> largest_dissipation{"largest_dissipation", "1",
+                                    "Largest factor of the Riemann solver's dissipation; 1 is an upwind "
+                                    "scheme, for which acoustic steps are "
+                                    "a third shorter.",
+                                    between(0.0, 1.0), default_to(0.4)};
   Param<double> shift_strength{
       "shift_strength",
       "1",
