@@ -15,6 +15,15 @@
 
 namespace shoal::fluid {
 
+// The upper triangle of v v, row by row.
+template <int D, class R>
+auto upper_square(const Vec<D, R>& v) {
+  Vec<D*(D + 1) / 2, R> upper{};
+  for (int a = 0, k = 0; a < D; ++a)
+    for (int b = a; b < D; ++b) upper[k++] = v[a] * v[b];
+  return upper;
+}
+
 // v'. Where neighbours do not span the space, e.g. in a spray, the gradient is damped towards zero.
 struct VelocityFluctuation : PairOperator<VelocityFluctuation> {
   In<Vector> velocity{"velocity"};
@@ -26,13 +35,15 @@ struct VelocityFluctuation : PairOperator<VelocityFluctuation> {
     const auto w = p.j(volume) * p.W();
     const auto r = (1.0 / p.h()) * p.r_ij();
     const auto v = p.i(velocity) - p.j(velocity);
-    return sums(w, w * r, w * v, outer(w * r, r), outer(w * v, r));
+    return sums(w, w * r, w * v, w * upper_square(r), outer(w * v, r));
   }
   template <int D>
-  void particle(Particle<D> i, double weight, Vec<D> r, Vec<D> v, Mat<D> rr, Mat<D> vr) const {
+  void particle(Particle<D> i, double weight, Vec<D> r, Vec<D> v, Vec<D*(D + 1) / 2> rr, Mat<D> vr) const {
     const double scale = 1.0 / (weight + volume[i] * self_w_);
     const Vec<D> mean_r = scale * r, mean_v = scale * v;
-    Mat<D> moment = scale * rr - outer(mean_r, mean_r);
+    Mat<D> moment;
+    for (int a = 0, k = 0; a < D; ++a)
+      for (int b = a; b < D; ++b, ++k) moment(a, b) = moment(b, a) = scale * rr[k] - mean_r[a] * mean_r[b];
     for (int a = 0; a < D; ++a) moment(a, a) += 1e-6;
     const Mat<D> gradient = (scale * vr - outer(mean_v, mean_r)) * inverse(moment);
     fluctuation[i] = mean_v - gradient * mean_r;

@@ -64,9 +64,4 @@ Cost run_dam_break(double water_particles, int outer_steps, int threads) {
   return result;
 }
 
-double load() {
-  double average[1] = {0.0};
-  return getloadavg(average, 1) == 1 ? average[0] : NAN;
-}
-
 }  // namespace shoal::bench

@@ -18,7 +18,5 @@ struct Cost {
 /// std::runtime_error with what the program said if it fails.
 Cost run_dam_break(double water_particles, int outer_steps, int threads);
 
-/// Tasks that could run at this moment, this one included, averaged over the last minute.
-double load();
 
 }  // namespace shoal::bench
