@@ -11,9 +11,9 @@
 // whose second part is a bulk viscosity: it damps sound, whatever its wavelength, at the rate A c h k^2 / 2, and does
 // nothing to an incompressible flow (compare the acoustic damper of Sun et al. 2023).
 //
-// Stability. The shortest sound waves that pairs resolve have a wave number kappa / h: kappa^2 = 1.4 in the interior (of a
-// lattice, h = 1.3 dx: 1.29 in 2D, 1.36 in 3D), 2.25 where walls reflect them (measured on hydrostatic_2d). Per step their
-// phase is C kappa, C = dt c / h, and their damping, one step late, A C kappa^2:
+// Stability. The shortest sound waves that pairs resolve have a wave number kappa / h, kappa^2 = 2.25 where walls reflect
+// them (measured on hydrostatic_2d; 1.3 in the interior of a lattice with h = 1.3 dx, where steps could be longer but
+// drops lose more energy by them). Per step their phase is C kappa, C = dt c / h, and their damping, one step late, A C kappa^2:
 //   C^2 kappa^2 + 2 A C kappa^2 < 4,    C < sqrt(A^2 + 4 / kappa^2) - A
 // What dissipates jumps of the pressure, B times the Riemann solver's, shrinks a checkerboard at the rate 3 B c / h:
 //   C < 2 / (3 B)
@@ -33,8 +33,8 @@ namespace shoal::fluid {
 using EquationOfState = Interface<shoal_equation_of_state>;
 
 // The largest C = dt c / h for a damping A and dissipation B of pressure jumps (0: none).
-inline double longest_acoustic_step(double damping, double dissipation, bool walls) {
-  const double kappa_squared = walls ? 2.25 : 1.4;
+inline double longest_acoustic_step(double damping, double dissipation) {
+  constexpr double kappa_squared = 2.25;
   const double sound = std::sqrt(damping * damping + 4.0 / kappa_squared) - damping;
   return std::min(sound, 2.0 / std::max(1e-3, 3.0 * dissipation));
 }

@@ -197,8 +197,7 @@ struct FluidBody {
   // Other stabilisations diffuse pressure less than acoustic steps bear.
   double longest_step() const {
     return longest_acoustic_step(physics.acoustic_damping,
-                                 physics.stabilisation.value() == "riemann" ? largest_dissipation() : 0.0,
-                                 has_walls());
+                                 physics.stabilisation.value() == "riemann" ? largest_dissipation() : 0.0);
   }
 
   template <bool Corrected>

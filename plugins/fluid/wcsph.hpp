@@ -102,8 +102,8 @@ struct Wcsph final : Physics {
   Param<double> acoustic_cfl{
       "acoustic_cfl",
       "1",
-      "Acoustic step over the longest that sound and what damps it bear: h / (c + |v|), and 1.4 times that "
-      "without walls, less where acoustic_damping or largest_dissipation are raised.",
+      "Acoustic step over the longest that sound and what damps it bear, h / (c + |v|), or less where "
+      "acoustic_damping or largest_dissipation are raised.",
       positive,
       default_to(0.88),
       scales_time_step};
