@@ -18,5 +18,4 @@ struct Cost {
 /// std::runtime_error with what the program said if it fails.
 Cost run_dam_break(double water_particles, int outer_steps, int threads);
 
-
 }  // namespace shoal::bench
