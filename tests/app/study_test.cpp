@@ -247,6 +247,7 @@ TEST_CASE("a study keeps within its time and goes on with more") {
   REQUIRE(table.size() == 3);
   CHECK(table[1][column(table, "status")].starts_with("stopped at "));
   CHECK(table[2][column(table, "status")] == "left out");
+  for (const std::size_t k : {1u, 2u}) CHECK(table[k][column(table, "height max error")].empty());
   CHECK(contains(result.err, "warning: dx=0.1: 0.7 s were over"));
   words.pop_back();
   words.push_back("1 min");

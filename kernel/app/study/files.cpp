@@ -169,7 +169,7 @@ std::string study_csv(const Study& study) {
     text += fmt::format(",{},{},{},{},{},{},{},{}", csv_cell(r.status), r.spacing, r.particles, r.outer_steps,
                         r.wall_seconds, r.particle_steps_per_second, r.peak_memory, r.bytes_per_particle);
     for (std::size_t e = 0; e < names.size(); ++e) {
-      const bool has = e < r.errors.size();
+      const bool has = r.finished() && e < r.errors.size();  // what came before is another comparison
       text += has ? fmt::format(",{},{},", r.errors[e].error, r.errors[e].tolerance) : ",,,";
       if (orders[e][k]) text += fmt::format("{}", *orders[e][k]);
     }
