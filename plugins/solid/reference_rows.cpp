@@ -32,6 +32,7 @@ struct Surroundings {
     Monomials<D> p;  // of (X_j - X_i) / h
     double w;        // V_j W_ij
     double slope;    // -V_j W'_ij / r
+    double even;     // V_j (1 - r^2 / (2 h)^2), of the hourglass residual
   };
   std::vector<Neighbour> neighbours;
 
@@ -43,9 +44,9 @@ struct Surroundings {
       Vec<D> d;
       for (int a = 0; a < D; ++a)
         d[a] = x[j * D + static_cast<std::size_t>(a)] - x[i * D + static_cast<std::size_t>(a)];
-      const double r = norm(d);
-      neighbours.push_back(
-          {monomials<D>(d / kernel.h()), volume[j] * kernel.w(r), -volume[j] * kernel.dw_over_r(r)});
+      const double r = norm(d), reach = 2.0 * kernel.h();
+      neighbours.push_back({monomials<D>(d / kernel.h()), volume[j] * kernel.w(r), -volume[j] * kernel.dw_over_r(r),
+                            volume[j] * std::max(0.0, 1.0 - r * r / (reach * reach))});
     }
   }
 };
@@ -60,47 +61,57 @@ class RowFit {
 
   // Writes the weights of a particle's neighbours; false if these do not span the space, and the weights are zero.
   bool operator()(const Surroundings<D>& around, double* out) {
-    moments_.setZero();
-    first_.setZero();
-    linear_.setZero();
-    double s = 0;
-    for (const auto& [p, w, slope] : around.neighbours) {
-      moments_.noalias() += w * p * p.transpose();
-      first_ += w * p;
-      linear_.noalias() += slope * p.template head<D>() * p.template head<D>().transpose();
-      s += w;
-    }
-    const double linear_moments = moments_.template topLeftCorner<D, D>().trace();
-    const bool corner = first_.template head<D>().norm() > asymmetry_of_corners * s;
-    const auto regularise = [&](double eps) {
-      for (int k = D; k < N; ++k) moments_(k, k) += eps * linear_moments;
-    };
-    regularise(settings_.eps);
-    const bool fits = solve_quadratic();
-    if (fits && corner) {
-      regularise((more_at_corners - 1.0) * settings_.eps);
-      take_gradient(Eigen::LLT<Moments<D>>(moments_));
-    }
+    sum_moments(around);
+    const bool fits = solve_gradient(), controls = solve_residual();
     const bool linear_fits = (!fits || !settings_.quadratic) && solve_linear();
-    for (const auto& [p, w, slope] : around.neighbours) {
+    for (const auto& [p, w, slope, even] : around.neighbours) {
       Vec<D> g{};
       if (fits && settings_.quadratic)
         for (int a = 0; a < D; ++a) g[a] = w / h_ * gradient_rows_.row(a).dot(p);
       else if (linear_fits)
         for (int a = 0; a < D; ++a) g[a] = slope / h_ * linear_inverse_.row(a).dot(p.template head<D>());
       for (int a = 0; a < D; ++a) *out++ = g[a];
-      *out++ = fits ? w * (1.0 - residual_row_.dot(p)) / s : 0.0;
+      *out++ = controls ? even * (1.0 - residual_row_.dot(p)) / sum_even_ : 0.0;
     }
     return fits || linear_fits;
   }
 
  private:
+  void sum_moments(const Surroundings<D>& around) {
+    moments_.setZero(), even_moments_.setZero();
+    first_.setZero(), even_first_.setZero();
+    linear_.setZero();
+    sum_ = sum_even_ = 0;
+    for (const auto& [p, w, slope, even] : around.neighbours) {
+      const Moments<D> square = p * p.transpose();
+      moments_ += w * square;
+      first_ += w * p;
+      linear_ += slope * square.template topLeftCorner<D, D>();
+      sum_ += w;
+      even_moments_ += even * square;
+      even_first_ += even * p;
+      sum_even_ += even;
+    }
+  }
   // False if there are too few neighbours around for a quadratic fit.
-  bool solve_quadratic() {
+  bool solve_gradient() {
+    const double linear_moments = moments_.template topLeftCorner<D, D>().trace();
+    const bool corner = first_.template head<D>().norm() > asymmetry_of_corners * sum_;
+    const auto regularise = [&](double eps) {
+      for (int k = D; k < N; ++k) moments_(k, k) += eps * linear_moments;
+    };
+    regularise(settings_.eps);
     const Eigen::LLT<Moments<D>> llt(moments_);
     if (!well_conditioned<D>(llt)) return false;
-    residual_row_ = llt.solve(first_);
-    take_gradient(llt);
+    if (!corner) return take_gradient(llt), true;
+    regularise((more_at_corners - 1.0) * settings_.eps);
+    take_gradient(Eigen::LLT<Moments<D>>(moments_));
+    return true;
+  }
+  bool solve_residual() {
+    const Eigen::LLT<Moments<D>> llt(even_moments_);
+    if (!well_conditioned<D>(llt)) return false;
+    residual_row_ = llt.solve(even_first_);
     return true;
   }
   void take_gradient(const Eigen::LLT<Moments<D>>& llt) {
@@ -118,8 +129,9 @@ class RowFit {
 
   const ReferenceSettings& settings_;
   double h_;
-  Moments<D> moments_;
-  Monomials<D> first_, residual_row_;
+  double sum_ = 0, sum_even_ = 0;
+  Moments<D> moments_, even_moments_;
+  Monomials<D> first_, even_first_, residual_row_;
   Eigen::Matrix<double, D, N> gradient_rows_;
   Eigen::Matrix<double, D, D> linear_, linear_inverse_;
 };
