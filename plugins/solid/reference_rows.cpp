@@ -45,7 +45,8 @@ struct Surroundings {
       for (int a = 0; a < D; ++a)
         d[a] = x[j * D + static_cast<std::size_t>(a)] - x[i * D + static_cast<std::size_t>(a)];
       const double r = norm(d), reach = 2.0 * kernel.h();
-      neighbours.push_back({monomials<D>(d / kernel.h()), volume[j] * kernel.w(r), -volume[j] * kernel.dw_over_r(r),
+      neighbours.push_back({monomials<D>(d / kernel.h()), volume[j] * kernel.w(r),
+                            -volume[j] * kernel.dw_over_r(r),
                             volume[j] * std::max(0.0, 1.0 - r * r / (reach * reach))});
     }
   }

@@ -3,7 +3,6 @@
 #include "solid_body.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "deformation.hpp"
@@ -37,9 +36,7 @@ SharedStructure structure_of(const SolidPhysics& physics, const Builder& b, Body
     throw CaseError(physics.average_volume.place() + ": the material of body '" + b.body(body).name +
                     "' does not keep volume and shape apart, so there is no pressure to average; "
                     "solid.neo_hookean (form: split) and solid.mooney_rivlin do");
-  // Pressure presses layers out of line against the shear modulus alone, so what resists grows with the bulk modulus.
-  const double mu = structure->constants.shear_modulus, K = structure->constants.bulk_modulus;
-  structure->hourglass = physics.hourglass * mu * std::clamp(std::sqrt(K / (10.0 * mu)), 1.0, 10.0);
+  structure->hourglass = physics.hourglass * structure->constants.shear_modulus;
   return structure;
 }
 

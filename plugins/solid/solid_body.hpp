@@ -38,9 +38,8 @@ struct SolidPhysics : Physics {
       default_to(true)};
   Param<double> hourglass{
       "hourglass", "1",
-      "Strength of the control of modes that alternate between particles, over the shear modulus; where the "
-      "bulk modulus K is more than ten times that, times sqrt(K / (10 mu)), at most 10. 0: none.",
-      non_negative, default_to(5.0)};
+      "Strength of the control of modes that alternate between particles, over the shear modulus; 0: none.",
+      non_negative, default_to(4.0)};
   Param<Choice> average_volume{"average_volume", nullptr,
                                "Whether the volumetric part of the energy takes volume ratios on a grid of "
                                "twice the spacing, which keeps the "
