@@ -166,7 +166,7 @@ TEST_CASE(
         v_r += (body["velocity"][i * d + a] - body["velocity"][j * d + a]) * r * e[a];
       for (std::size_t a = 0; a < d; ++a)
         force[i * d + a] += 2.0 * (dimensions + 2) * eta / body["density"][i] * body["volume"][j] * v_r /
-                            (r * r + 0.01 * h * h) * plain_dw(dimensions, h, r) * e[a];
+                            (r * r) * plain_dw(dimensions, h, r) * e[a];
     });
     CentralViscousForce op;
     op.viscosity = eta;
@@ -212,7 +212,7 @@ TEST_CASE("the walls' share of the central viscous force is that of fluid whose 
     const double factor = j < 2 ? 2.0 : 4.0;  // 1 + d_w / d_i
     const double v_r = factor * (0.5 * e[0] - 2.0 * e[1]) * r;
     for (std::size_t a = 0; a < 2; ++a)
-      force[a] += 8.0 * 2.5 / rho0 * dx * dx * v_r / (r * r + 0.01 * h * h) * plain_dw(2, h, r) * e[a];
+      force[a] += 8.0 * 2.5 / rho0 * dx * dx * v_r / (r * r) * plain_dw(2, h, r) * e[a];
   });
   WallCentralViscousForce op;
   op.viscosity = 2.5;
