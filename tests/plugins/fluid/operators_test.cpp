@@ -128,8 +128,7 @@ TEST_CASE(
   accelerations([](double y) { return y * y; });
   const double nu = 2.0 / rho0;
   for (std::size_t i = 0; i < water.size(); ++i)
-    if (inside(water, i))
-      CHECK(water["acceleration"][2 * i] == doctest::Approx(2.0 * nu).epsilon(1e-12));
+    if (inside(water, i)) CHECK(water["acceleration"][2 * i] == doctest::Approx(2.0 * nu).epsilon(1e-12));
 }
 
 TEST_CASE("the shift moves particles apart, leaves a lattice alone, and is bounded") {

@@ -208,7 +208,8 @@ TEST_CASE("water at rest feels walls, corners too, as it would feel more water")
   }
 }
 
-TEST_CASE("a wall does not pull where there is a free surface, and continues a pressure that falls where not") {
+TEST_CASE(
+    "a wall does not pull where there is a free surface, and continues a pressure that falls where not") {
   Body drop(2, {0.0, 0.02});
   drop.set("density", rho0);
   drop.set("pressure", 1.0);
