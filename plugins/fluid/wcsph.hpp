@@ -74,7 +74,9 @@ struct Wcsph final : Physics {
       "density; take it for waves and long calm runs, with artificial_viscosity 0.02 for impacts. fourtakas: "
       "the "
       "same against the hydrostatic density, for water that is mostly at rest. edac: diffusion of the "
-      "pressure, for internal flows without gravity; take density_summation: false with it. none: only "
+      "pressure, for vortices in periodic domains and for wakes, without gravity; take density_summation: "
+      "false "
+      "and gradient_correction: true with it. none: only "
       "acoustic_damping, to compare.",
       one_of("riemann", "antuono", "fourtakas", "edac", "none"), default_to("riemann")};
   Param<double> diffusion{
