@@ -4,9 +4,8 @@
 // Walls: a one-sided Riemann problem between a fluid particle i and the wall's particle j (Zhang, Hu, Adams 2017;
 // Zhang, Rezavand, Hu 2021). The wall's state is the mirror image of the fluid's:
 //   pressure  p_w = p_i + rho a_i.(r_j - r_i): the linear field that balances the acceleration a_i by all but pressure
-//             (gravity, viscosity), so that a fluid at rest feels the exact hydrostatic force. With a free surface
-//             p_w >= min(p_i, 0): a wall does not pull. Without one pressures below zero mean nothing, and the bound
-//             would falsify the gradient wherever the pressure falls towards the wall, as behind a cylinder
+//             (gravity), so that a fluid at rest feels the exact hydrostatic force; p_w >= min(p_i, 0): a wall does
+//             not pull
 //   velocity  v_w' = v_i - 2 [(v_i - v_w).n] n            n: the wall's normal, towards the fluid
 // With a free surface a wall does not pull particles that touch it either (n.(x_i - s_j) < dx/4, s_j the surface next to j):
 // P = max(p_i + p_w, 0) for those. Suction of some 20 kPa beside the sharp edges of an obstacle drew particles into it.
@@ -29,12 +28,10 @@ auto towards(const Direction& fluid, const Normal& n) {
   return select(along < 0.0, R(-1.0), R(1.0)) * n;
 }
 
-// Pressure of the wall's image of a fluid particle; `to_wall` is the wall particle's position less the fluid's. It is
-// bounded by the fluid's where that is below `least`.
+// Pressure of the wall's image of a fluid particle; `to_wall` is the wall particle's position less the fluid's.
 template <class P, class A, class X>
-auto wall_pressure(double rho, const P& fluid_pressure, const A& acceleration, const X& to_wall,
-                   double least) {
-  return max(min(fluid_pressure, least), fluid_pressure + rho * dot(acceleration, to_wall));
+auto wall_pressure(double rho, const P& fluid_pressure, const A& acceleration, const X& to_wall) {
+  return max(min(fluid_pressure, 0.0), fluid_pressure + rho * dot(acceleration, to_wall));
 }
 
 // p_i + p_w, not below zero where the fluid's particle is `distance` from the surface and that is less than `touching`.
@@ -62,10 +59,9 @@ struct WallPressureForceOf : PairOperator<WallPressureForceOf<Corrected>> {
   double reference_density = 0;  // kg/m3
   double gradient_scale = 1;     // 1 / slope of lattice_sums()
   double touching = -1e300;      // m
-  double least = -1e300;         // Pa, 0 with a free surface
 
   auto pair(const auto& p) const {
-    const auto p_w = wall_pressure(reference_density, p.i(pressure), p.i(acceleration), -p.r_ij(), least);
+    const auto p_w = wall_pressure(reference_density, p.i(pressure), p.i(acceleration), -p.r_ij());
     const auto distance = dot(p.j(wall_normal), p.r_ij()) + p.j(wall_distance);
     const auto weight =
         p.j(wall_volume) * p.dW_over_r() * without_pull(p.i(pressure), p_w, distance, touching);
@@ -142,12 +138,11 @@ struct WallForceOf : PairOperator<WallForceOf<Corrected>> {
   double most = 1.0;          // B of riemann.hpp
   double gradient_scale = 1;  // 1 / slope of lattice_sums()
   double touching = -1e300;   // m, as of WallPressureForce
-  double least = -1e300;      // Pa, as of WallPressureForce
 
   auto pair(const auto& p) const {
     const auto weight = p.j(volume) * p.dW_over_r();
     const auto p_j = p.j(pressure);
-    const auto p_w = wall_pressure(reference_density, p_j, p.j(acceleration), p.r_ij(), least);
+    const auto p_w = wall_pressure(reference_density, p_j, p.j(acceleration), p.r_ij());
     const auto distance = p.i(wall_distance) - dot(p.i(wall_normal), p.r_ij());
     const auto both = without_pull(p_j, p_w, distance, touching);
     const auto n = towards(-p.r_ij(), p.i(wall_normal));

@@ -200,13 +200,6 @@ struct FluidBody {
                                  physics.stabilisation.value() == "riemann" ? largest_dissipation() : 0.0);
   }
 
-  // With a free surface walls do not pull.
-  void without_pull(auto& op) const {
-    if (!physics.free_surface) return;
-    op.touching = 0.25 * itself().spacing;
-    op.least = 0.0;
-  }
-
   template <bool Corrected>
   void attach_acoustic() const {
     b.attach<AcousticPredictor>("fluid.predict", at_predict, itself(), [&](auto& op) {
@@ -221,7 +214,8 @@ struct FluidBody {
                                                [&](auto& op) {
                                                  op.reference_density = density;
                                                  op.gradient_scale = 1.0 / lattice.slope;
-                                                 without_pull(op);
+                                                 if (physics.free_surface)
+                                                   op.touching = 0.25 * itself().spacing;
                                                });
     b.attach<Kick>("fluid.kick", at_kick, itself());
     const auto riemann = [&](auto& op) {
@@ -267,7 +261,7 @@ struct FluidBody {
             op.limiter = physics.dissipation_limiter;
             op.most = largest_dissipation();
             op.gradient_scale = 1.0 / lattice.slope;
-            without_pull(op);
+            if (physics.free_surface) op.touching = 0.25 * itself().spacing;
           },
           SHOAL_OPERATOR_ON_DEMAND);
     }

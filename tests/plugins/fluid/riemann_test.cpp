@@ -208,8 +208,7 @@ TEST_CASE("water at rest feels walls, corners too, as it would feel more water")
   }
 }
 
-TEST_CASE(
-    "a wall does not pull where there is a free surface, and continues a pressure that falls where not") {
+TEST_CASE("a wall does not pull") {
   Body drop(2, {0.0, 0.02});
   drop.set("density", rho0);
   drop.set("pressure", 1.0);
@@ -218,20 +217,8 @@ TEST_CASE(
   wall.set("volume", 0.05 * 0.05);
   WallPressureForce op;
   op.reference_density = rho0;
-  op.least = 0.0;
   testing::run(op, drop, {&wall}, {.smoothing_length = 0.065});
   CHECK(drop["pressure_acceleration"][1] > 0.0);
-
-  // p_w = p_i + rho a.(r_j - r_i), whatever its sign
-  double expected = 0;
-  for_all_pairs(drop, wall, 2 * 0.065, [&](auto, auto, double r, const auto& e) {
-    expected -= 0.05 * 0.05 / rho0 * (2.0 - rho0 * 50.0 * r * e[1]) * plain_dw(2, 0.065, r) * e[1];
-  });
-  drop["pressure_acceleration"] = {0.0, 0.0};
-  op.least = -1e300;
-  testing::run(op, drop, {&wall}, {.smoothing_length = 0.065});
-  CHECK(expected < 0.0);
-  CHECK(drop["pressure_acceleration"][1] == doctest::Approx(expected).epsilon(1e-12));
 }
 
 TEST_CASE("a wall does not pull a particle in tension that touches it, where there is a free surface") {
