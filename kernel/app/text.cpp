@@ -51,6 +51,8 @@ std::string percent_text(double share) {
 
 std::string significant(double value, int digits) { return fmt::format("{:.{}g}", value, digits); }
 
+std::string last_word(const std::string& key) { return key.substr(key.rfind('.') + 1); }
+
 std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t left,
                   const std::string& indent) {
   std::vector<int> widths;

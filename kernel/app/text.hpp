@@ -17,6 +17,7 @@ std::string simulated_time_text(
     double seconds);  ///< four significant digits with ms, us where they fit better: 0.41 ms
 std::string percent_text(double share);             ///< 12 %, 0.3 %, 2e-05 %
 std::string significant(double value, int digits);  ///< as %.{digits}g
+std::string last_word(const std::string& key);      ///< behind the last dot: acoustic_cfl
 
 /// Columns with two blanks between them; the first `left` are aligned to the left, the others to the right.
 std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t left,

@@ -8,7 +8,8 @@
 // The paper has beta0 = 0: no dissipation in expansion, and next to none where the flow is slow. Here B takes the place
 // of the 1, and the jump of the pressure in v* counts B times too. With the paper's B = 1 a checkerboard decays at the
 // rate 3 c / h and acoustic steps above 2/3 h / c fail; B = 0.4, still twice the diffusion of delta-SPH, lets them be as
-// long as sound does, and no error grows by it (dam_break_2d, standing_wave, hydrostatic_2d).
+// long as sound does. Peaks of impacts want B = 1 (dam_break_3d), and so does a free patch under tension (square_patch);
+// dam_break_2d, standing_wave and hydrostatic_2d do as well with 0.4.
 // Densities differ by about 1 %, so the averages are plain ones, which saves a division and the densities of the
 // neighbours. The terms are gathered where their fields are read anyway: those of the pressure (P* without beta, and
 // its jump in v*) in PressureForce, those of the velocity in VelocityDivergence.

@@ -23,8 +23,6 @@ std::string order_text(const std::optional<double>& order) {
   return order ? fmt::format("{:.2f}", *order) : "";
 }
 
-std::string last_word(const std::string& key) { return key.substr(key.rfind('.') + 1); }
-
 // What distinguishes the curves of a picture: the values of all variations but the refined one.
 std::string curve_of(const Study& study, const StudyResult& result) {
   std::string name;

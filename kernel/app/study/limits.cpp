@@ -19,8 +19,6 @@ namespace {
 
 constexpr double raised_by = 1.1, largest_ratio = 3.0, tolerated_ratio = 2.0;
 
-std::string last_word(const std::string& key) { return key.substr(key.rfind('.') + 1); }
-
 // Largest magnitude of each column but the first, which is time; not a number if one of them is not.
 std::vector<double> magnitudes(const Table& table) {
   std::vector<double> largest(table.names.empty() ? 0 : table.names.size() - 1, 0.0);

@@ -190,9 +190,6 @@ Rows errors(const CaseReport& report) {
   return rows;
 }
 
-// The last word of a key, in limits.csv.
-std::string last_word(const std::string& key) { return key.substr(key.rfind('.') + 1); }
-
 // How far time steps can be raised, as limits.csv says.
 Rows limits(const CaseReport& report) {
   if (report.limits.size() < 2) return {};
