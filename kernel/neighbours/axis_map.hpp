@@ -32,10 +32,18 @@ class AxisMap {
   /// Cells per metre.
   double per_cell() const { return per_cell_; }
 
-  /// Fractional cell number of any coordinate, limited so that it fits an integer.
+  /// Fractional cell number of any coordinate, within +-far, so that it fits an integer. What is not a number is far.
   double locate(double x) const {
-    const double u = segments_.empty() ? (x - lower_) * per_cell_ : locate_in_segments(x);
-    return std::clamp(u, -far, far);
+    return limited(is_uniform() ? (x - lower_) * per_cell_ : locate_in_segments(x));
+  }
+  /// The same of n coordinates that stand `stride` numbers apart.
+  void locate(const double* x, std::size_t n, std::size_t stride, double* u) const {
+    if (!is_uniform()) {
+      for (std::size_t i = 0; i < n; ++i) u[i] = limited(locate_in_segments(x[i * stride]));
+      return;
+    }
+    const double lower = lower_, per_cell = per_cell_;
+    for (std::size_t i = 0; i < n; ++i) u[i] = limited((x[i * stride] - lower) * per_cell);
   }
   /// Cell of a coordinate that holds a particle.
   std::int64_t cell(double x) const {
@@ -44,8 +52,10 @@ class AxisMap {
   }
   bool is_uniform() const { return segments_.empty(); }
 
- private:
   static constexpr double far = 0x1p50;
+
+ private:
+  static double limited(double u) { return std::min(far, std::max(-far, u)); }
 
   // Occupied slices first ... first + length - 1 (in slices from coordinate zero) become offset ... + length - 1.
   struct Segment {

@@ -105,28 +105,27 @@ void NeighbourList::build(const NeighbourGrid& sources, Positions targets, doubl
 template <int D, class Scan>
 void NeighbourList::build_rows(const NeighbourGrid& sources, Positions targets, bool same_body) {
   const RunFinder<D> finder(sources, cutoff_);
+  RowTarget<D> scheme{};
+  scheme.squared_radius = cutoff_ * cutoff_;
+  scheme.order = sources.order();
+  for (int a = 0; a < D; ++a) scheme.sorted[a] = sources.sorted(a);
   // Rows first ... last-1 into `writer`; offsets are counted from where the writer stands. Returns the pairs.
   const auto fill_rows = [&](std::size_t first, std::size_t last, RowWriter& writer) {
-    RowTarget<D> target{};
-    target.squared_radius = cutoff_ * cutoff_;
-    target.order = sources.order();
-    for (int a = 0; a < D; ++a) target.sorted[a] = sources.sorted(a);
-    std::array<Run, RunFinder<D>::max_runs> runs{};
+    RowTarget<D> target = scheme;
+    RunBlock<D> runs;
     std::uint64_t pairs = 0;
     for (std::size_t i = first; i < last; ++i) {
-      bool finite = true;
-      for (int a = 0; a < D; ++a) {
-        target.x[a] = targets.data[i * D + static_cast<std::size_t>(a)];
-        finite &= std::isfinite(target.x[a]);
-      }
-      target.self = same_body ? static_cast<std::uint32_t>(i) : no_particle;
-      const std::size_t n_runs = finite ? finder.find(target.x, runs) : 0;
-      std::size_t candidates = 0;
-      for (std::size_t k = 0; k < n_runs; ++k) candidates += runs[k].end - runs[k].begin;
-      std::uint32_t* const row = writer.room_for(candidates);
-      const std::uint32_t* const out = scan_runs<D, Scan>(target, runs.data(), n_runs, row);
-      const auto count = static_cast<std::size_t>(out - row);
+      const std::size_t row_of_block = (i - first) % RunBlock<D>::rows;
+      if (row_of_block == 0)
+        finder.find(targets.data + i * D, std::min(last - i, RunBlock<D>::rows), runs);
       offsets_[i] = writer.used;
+      counts_[i] = 0;
+      if (runs.candidates[row_of_block] == 0) continue;
+      for (int a = 0; a < D; ++a) target.x[a] = targets.data[i * D + static_cast<std::size_t>(a)];
+      target.self = same_body ? static_cast<std::uint32_t>(i) : no_particle;
+      std::uint32_t* const row = writer.room_for(runs.candidates[row_of_block]);
+      const std::uint32_t* const out = scan_runs<D, Scan>(target, runs, row_of_block, row);
+      const auto count = static_cast<std::size_t>(out - row);
       counts_[i] = static_cast<std::uint32_t>(count);
       writer.finish_row(count);
       pairs += count;

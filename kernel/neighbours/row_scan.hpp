@@ -18,6 +18,8 @@
 #include <immintrin.h>
 #endif
 
+#include "kernel/neighbours/run_finder.hpp"
+
 namespace shoal::kernel {
 
 /// Sorted particles begin ... end-1.
@@ -187,18 +189,19 @@ class StepList {
 };
 #endif
 
-/// Scans all runs; the neighbours stand at `out` up to the returned end.
+/// Scans the runs of place i of a block; the neighbours stand at `out` up to the returned end.
 template <int D, class Scan>
-std::uint32_t* scan_runs(const RowTarget<D>& target, const Run* runs, std::size_t n_runs,
+std::uint32_t* scan_runs(const RowTarget<D>& target, const RunBlock<D>& block, std::size_t i,
                          std::uint32_t* out) {
   if constexpr (Scan::width == 1) {
-    for (std::size_t r = 0; r < n_runs; ++r) out = Scan::scan(target, runs[r], out);
+    for (std::size_t r = 0; r < block.runs; ++r)
+      out = Scan::scan(target, {block.begin[r][i], block.end[r][i]}, out);
   } else {
 #if defined(__AVX2__)
     StepList<Scan::width> steps;
     constexpr std::uint32_t part = steps.at_once * Scan::width;
-    for (std::size_t r = 0; r < n_runs; ++r) {
-      std::uint32_t first = runs[r].begin, length = runs[r].end - runs[r].begin;
+    for (std::size_t r = 0; r < block.runs; ++r) {
+      std::uint32_t first = block.begin[r][i], length = block.end[r][i] - first;
       for (; length > part || steps.is_full();
            first += std::min(part, length), length -= std::min(part, length)) {
         if (steps.is_full()) {
