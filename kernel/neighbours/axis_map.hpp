@@ -34,7 +34,7 @@ class AxisMap {
 
   /// Fractional cell number of any coordinate, within +-far, so that it fits an integer. What is not a number is far.
   double locate(double x) const {
-    return limited(is_uniform() ? (x - lower_) * per_cell_ : locate_in_segments(x));
+    return limited(unlimited(x));
   }
   /// The same of n coordinates that stand `stride` numbers apart.
   void locate(const double* x, std::size_t n, std::size_t stride, double* u) const {
@@ -47,7 +47,7 @@ class AxisMap {
   }
   /// Cell of a coordinate that holds a particle.
   std::int64_t cell(double x) const {
-    const auto c = static_cast<std::int64_t>(std::floor(locate(x)));
+    const auto c = static_cast<std::int64_t>(std::floor(unlimited(x)));
     return std::clamp<std::int64_t>(c, 0, cells_ - 1);
   }
   bool is_uniform() const { return segments_.empty(); }
@@ -63,6 +63,9 @@ class AxisMap {
     double length;
     double offset;
   };
+  double unlimited(double x) const {
+    return is_uniform() ? (x - lower_) * per_cell_ : locate_in_segments(x);
+  }
   double locate_in_segments(double x) const;
 
   double lower_ = 0.0;

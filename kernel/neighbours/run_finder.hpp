@@ -102,6 +102,7 @@ class RunFinder {
 
   void locate(int rank, const double* x, std::size_t n, SlowCells& slow) const {
     alignas(64) double u[places];
+    alignas(64) std::int32_t middle[places];
     locate(rank, x, n, u);
     const double rounding = grid_.rounding(), width = grid_.map(rank).cell_width(), per_reach = 1.0 / reach_;
     const auto cells = static_cast<std::int32_t>(grid_.map(rank).cells());
@@ -110,14 +111,14 @@ class RunFinder {
       const double whole = std::floor(u[i]);
       const double below = std::max(0.0, (u[i] - whole) * width - rounding) * per_reach;
       const double above = std::max(0.0, (1.0 - (u[i] - whole)) * width - rounding) * per_reach;
-      slow.cell[1][i] = static_cast<std::int32_t>(std::min(std::max(whole, -2.0), last));
+      middle[i] = static_cast<std::int32_t>(std::min(std::max(whole, -2.0), last));
       slow.squared_gap[0][i] = static_cast<float>(below * below);
       slow.squared_gap[1][i] = 0.0f;
       slow.squared_gap[2][i] = static_cast<float>(above * above);
     }
-    for (int j : {0, 2, 1})
+    for (int j = 0; j < 3; ++j)
       for (std::size_t i = 0; i < places; ++i) {
-        const std::int32_t cell = slow.cell[1][i] + j - 1;
+        const std::int32_t cell = middle[i] + j - 1;
         const bool inside = (cell >= 0) & (cell < cells);
         slow.cell[j][i] = inside ? cell : 0;
         slow.squared_gap[j][i] = inside ? slow.squared_gap[j][i] : out_of_reach;
