@@ -33,9 +33,7 @@ class AxisMap {
   double per_cell() const { return per_cell_; }
 
   /// Fractional cell number of any coordinate, within +-far, so that it fits an integer. What is not a number is far.
-  double locate(double x) const {
-    return limited(unlimited(x));
-  }
+  double locate(double x) const { return limited(unlimited(x)); }
   /// The same of n coordinates that stand `stride` numbers apart.
   void locate(const double* x, std::size_t n, std::size_t stride, double* u) const {
     if (!is_uniform()) {
@@ -63,9 +61,7 @@ class AxisMap {
     double length;
     double offset;
   };
-  double unlimited(double x) const {
-    return is_uniform() ? (x - lower_) * per_cell_ : locate_in_segments(x);
-  }
+  double unlimited(double x) const { return is_uniform() ? (x - lower_) * per_cell_ : locate_in_segments(x); }
   double locate_in_segments(double x) const;
 
   double lower_ = 0.0;

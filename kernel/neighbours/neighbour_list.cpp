@@ -116,8 +116,7 @@ void NeighbourList::build_rows(const NeighbourGrid& sources, Positions targets, 
     std::uint64_t pairs = 0;
     for (std::size_t i = first; i < last; ++i) {
       const std::size_t row_of_block = (i - first) % RunBlock<D>::rows;
-      if (row_of_block == 0)
-        finder.find(targets.data + i * D, std::min(last - i, RunBlock<D>::rows), runs);
+      if (row_of_block == 0) finder.find(targets.data + i * D, std::min(last - i, RunBlock<D>::rows), runs);
       offsets_[i] = writer.used;
       counts_[i] = 0;
       if (runs.candidates[row_of_block] == 0) continue;

@@ -106,7 +106,8 @@ class RunFinder {
     locate(rank, x, n, u);
     const double rounding = grid_.rounding(), width = grid_.map(rank).cell_width(), per_reach = 1.0 / reach_;
     const auto cells = static_cast<std::int32_t>(grid_.map(rank).cells());
-    const double last = static_cast<double>(cells) + 1.0;  // all three cells are outside here as anywhere above
+    const double last =
+        static_cast<double>(cells) + 1.0;  // all three cells are outside here as anywhere above
     for (std::size_t i = 0; i < places; ++i) {
       const double whole = std::floor(u[i]);
       const double below = std::max(0.0, (u[i] - whole) * width - rounding) * per_reach;

@@ -95,3 +95,29 @@ TEST_CASE("a compressed axis keeps distances up to the cut-off and its order") {
   for (double other : x) errors += map.cell(other) < 0 || map.cell(other) >= map.cells();
   CHECK(errors == 0);
 }
+
+TEST_CASE("an axis locates many coordinates as it does each") {
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> held = {0.0, 0.4, 1.7, 300.0, 301.0, 4e6};
+  AxisMap uniform, compressed;
+  uniform.set_uniform(-2.0, 30.0, 0.5, 8);
+  compressed.set_compressed(held.data(), held.size(), 1, 0.5, 8);
+  REQUIRE_FALSE(compressed.is_uniform());
+  std::vector<double> x;
+  for (double c : {-inf, -1e300, -1e6, -2.0, -0.1, 0.0, 0.26, 1.7, 150.0, 300.0, 301.2, 4e6, 1e300, inf, nan})
+    x.insert(x.end(), {c, -7.0, 9.0});  // a stride of three
+  for (const AxisMap* map : {&uniform, &compressed}) {
+    std::vector<double> u(x.size() / 3);
+    map->locate(x.data(), u.size(), 3, u.data());
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      CAPTURE(x[3 * i]);
+      CHECK(u[i] == map->locate(x[3 * i]));
+      CHECK(std::abs(u[i]) <= AxisMap::far);
+    }
+    const double first = map->locate(held[0]);
+    CHECK(map->locate(held[1]) - first == doctest::Approx(0.4 / 0.5 * 8));
+    CHECK(static_cast<std::int64_t>(std::floor(first)) == map->cell(held[0]));
+  }
+  CHECK(uniform.locate(0.0) == 32.0);
+  CHECK(uniform.locate(nan) == -AxisMap::far);
+}

@@ -235,6 +235,100 @@ TEST_CASE("positions that are not finite are reported and left out") {
   check_self(none, 0.2);
 }
 
+TEST_CASE("a row is the same wherever it stands among the others, and however many there are") {
+  // Rows are found in blocks: these numbers end before, at and behind the end of one.
+  for (int d : {2, 3})
+    for (std::size_t n : {1u, 63u, 64u, 65u, 127u, 128u, 129u, 200u}) {
+      CAPTURE(d);
+      CAPTURE(n);
+      const Cloud sources = random_cloud(d, 300, 0.0, 1.0, 24), targets = random_cloud(d, n, -0.3, 1.3, 25);
+      check_list(targets, n, sources, 0.21, false);
+      check_list(sources, n, sources, 0.21, true);
+    }
+}
+
+TEST_CASE("rows without a candidate among others, in whole blocks and here and there") {
+  for (int d : {2, 3}) {
+    Cloud targets{d, {}};
+    std::mt19937_64 random(26);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    for (int i = 0; i < 600; ++i) {
+      const double shift = i < 200 ? 50.0 : (i % 3 == 0 ? -20.0 : 0.0);
+      std::vector<double> p(static_cast<std::size_t>(d), 0.0);
+      for (double& c : p) c = uniform(random);
+      p[static_cast<std::size_t>(i % d)] += shift;
+      targets.add(p);
+    }
+    check_list(targets, targets.size(), random_cloud(d, 400, 0.0, 1.0, 27), 0.2, false);
+  }
+}
+
+TEST_CASE("images of particles across the faces of a periodic box make rows of the nearest images") {
+  const double cutoff = 0.17;
+  for (int d : {2, 3}) {
+    const Cloud owned = random_cloud(d, 400, 0.0, 1.0, 28);
+    Cloud all = owned;
+    std::vector<std::uint32_t> original(owned.size());
+    for (std::uint32_t i = 0; i < original.size(); ++i) original[i] = i;
+    for (int image = 0; image < (d == 2 ? 9 : 27); ++image) {
+      const int shift[3] = {image % 3 - 1, image / 3 % 3 - 1, d == 2 ? 0 : image / 9 - 1};
+      if (shift[0] == 0 && shift[1] == 0 && shift[2] == 0) continue;
+      for (std::uint32_t i = 0; i < owned.size(); ++i) {
+        std::vector<double> p;
+        for (int a = 0; a < d; ++a)
+          p.push_back(owned.x[i * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)] + shift[a]);
+        if (!std::all_of(p.begin(), p.end(), [&](double c) { return c > -cutoff && c < 1.0 + cutoff; }))
+          continue;
+        all.add(p);
+        original.push_back(i);
+      }
+    }
+    check_list(all, owned.size(), all, cutoff, true);
+    NeighbourGrid grid;
+    grid.build(all.positions(), cutoff);
+    NeighbourList list;
+    list.build(grid, {all.x.data(), owned.size(), d}, cutoff, true);
+    auto rows = rows_of(list);
+    for (auto& row : rows)
+      for (std::uint32_t& j : row) j = original[j];
+    std::vector<std::vector<std::uint32_t>> expected(owned.size());
+    for (std::uint32_t i = 0; i < owned.size(); ++i)
+      for (std::uint32_t j = 0; j < owned.size(); ++j) {
+        double r2 = 0.0;
+        for (std::size_t a = 0; a < static_cast<std::size_t>(d); ++a) {
+          double difference =
+              owned.x[i * static_cast<std::size_t>(d) + a] - owned.x[j * static_cast<std::size_t>(d) + a];
+          difference -= std::round(difference);
+          r2 += difference * difference;
+        }
+        if (i != j && r2 < cutoff * cutoff) expected[i].push_back(j);
+      }
+    CHECK(sorted_rows(rows) == expected);
+  }
+}
+
+TEST_CASE("targets that are not finite, or far away, beside any grid") {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  for (int d : {2, 3})
+    for (bool compressed : {false, true}) {
+      Cloud sources = random_cloud(d, 500, 0.0, 1.0, 29);
+      if (compressed)
+        for (std::size_t k = sources.x.size() / 2; k < sources.x.size(); ++k) sources.x[k] += 1e5;
+      Cloud targets = random_cloud(d, 300, 0.0, 1.0, 30);
+      std::size_t next = 0;
+      for (double odd : {nan, inf, -inf, 1e300, -1e300, 1e17, -1e17, 5e4, -1.0, 2.0})
+        for (int a = 0; a < d; ++a, next += 7)
+          targets.x[next * static_cast<std::size_t>(d) + static_cast<std::size_t>(a)] = odd;
+      check_list(targets, targets.size(), sources, 0.2, false);
+      NeighbourGrid grid;
+      grid.build(sources.positions(), 0.2);
+      CHECK(grid.map(0).is_uniform() == !compressed);
+      NeighbourList list;
+      list.build(grid, targets.positions(), 0.2, false);
+      for (std::size_t i = 0; i < next; i += 7) CHECK(list.counts()[i] == 0);
+    }
+}
+
 TEST_CASE("one thread and two give the same list") {
   for (int d : {2, 3}) {
     Cloud cloud = d == 2 ? jittered_lattice(2, 250, 0.01, 0.4, 20) : jittered_lattice(3, 38, 0.01, 0.4, 21);
