@@ -169,6 +169,8 @@ void NeighbourList::build_parallel(const FillRows& fill_rows) {
   std::vector<Block> blocks(4 * available_threads());
   std::vector<Block*> idle;
   for (Block& block : blocks) idle.push_back(&block);
+  const std::size_t usual =
+      indices_.capacity() / n_rows_ * block_rows;  // of the last build, or of the sample
   std::mutex idle_mutex;
   std::shared_mutex growth;
   std::size_t next = 0;
@@ -189,6 +191,7 @@ void NeighbourList::build_parallel(const FillRows& fill_rows) {
     return block;
   };
   const auto fill = [&](Block* block) {
+    block->rows.reserve(usual + usual / 4);
     RowWriter writer{block->rows};
     block->pairs = fill_rows(block->first, block->last, writer);
     block->used = writer.used;

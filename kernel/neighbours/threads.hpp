@@ -19,7 +19,8 @@ inline std::size_t available_threads() {
 }
 
 inline bool use_threads(std::size_t n) { return n >= 4096 && available_threads() > 1; }
-/// For the rows of a neighbour list, each of which takes as long as some twenty particles in other loops.
-inline bool use_threads_for_rows(std::size_t n) { return n >= 1024 && available_threads() > 1; }
+/// For the rows of a neighbour list, each of which takes as long as some ten particles in other loops. Handing blocks to
+/// two threads costs what some 1200 rows in 2D do.
+inline bool use_threads_for_rows(std::size_t n) { return n >= 2048 && available_threads() > 1; }
 
 }  // namespace shoal::kernel
