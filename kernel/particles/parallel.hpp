@@ -19,7 +19,7 @@ inline constexpr std::uint64_t chunk_size = 256;
 /// Below this many particles everything runs on the calling thread, but for operators whose calls have taken long enough
 /// so far: a pass over pairs of 1000 particles gains by a second thread, an update of 5000 does not.
 inline constexpr std::uint64_t serial_below = 5000;
-inline constexpr std::uint64_t worth_threads = 50'000;  ///< of one call, ns
+inline constexpr std::uint64_t worth_threads = 12'000;  ///< of one call, ns
 
 constexpr std::uint64_t n_chunks(std::uint64_t n) { return (n + chunk_size - 1) / chunk_size; }
 

@@ -15,7 +15,9 @@ namespace shoal::fluid {
 struct CentralForm {
   static double factor(int dimensions) { return 2.0 * (dimensions + 2); }
   static constexpr double longest_step = 0.125;  // dt nu / h^2
-  static auto exchange(const auto& p, const auto& v) { return (p.dW_over_r() * dot(v, p.e())) * p.e(); }
+  static auto exchange(const auto& p, const auto& weight, const auto& v) {
+    return (weight * dot(v, p.e())) * p.e();
+  }
 };
 
 using CentralViscousForce = ViscousForceOf<CentralForm>;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Continuity and momentum with the low-dissipation Riemann solver (Zhang, Hu, Adams 2017):
-//   dv_i/dt   = -(2/rho_i) sum_j V_j P* W' e_ij,        P* = (p_i + p_j)/2 + beta rho c (u_L - u_R)/2
+//   dv_i/dt   = -(2/m_i) sum_j V_i V_j P* W' e_ij,      P* = (p_i + p_j)/2 + beta rho c (u_L - u_R)/2
 //   drho_i/dt =  2 rho_i sum_j V_j (v_i - v*).e_ij W',  v*.e_ij = (v_i + v_j).e_ij/2 - (p_i - p_j)/(2 rho c)
 //   u_L - u_R = -(v_i - v_j).e_ij,   beta = min(max(3 (u_L - u_R)/c, beta0), B)
 // The paper has beta0 = 0: no dissipation in expansion, and next to none where the flow is slow. Here B takes the place
@@ -23,6 +23,8 @@
 // water at rest and in free fall are both exact.
 #pragma once
 
+#include <memory>
+
 #include "shoal/pair_operator.hpp"
 
 #include "gradient_matrix.hpp"
@@ -40,7 +42,7 @@ template <bool Corrected>
 struct PressureForceOf : PairOperator<PressureForceOf<Corrected>> {
   In<Scalar> pressure{"pressure"};
   In<Scalar> volume{"volume"};
-  In<Scalar> density{"density", own_only};
+  In<Scalar> mass{"mass", own_only};
   In<Vector> last_acceleration{"last_pressure_acceleration", unit("m/s2"),
                                doc("Acceleration by pressure in the last acoustic step.")};
   InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"),
@@ -53,9 +55,10 @@ struct PressureForceOf : PairOperator<PressureForceOf<Corrected>> {
   double sound_speed = 0;        // m/s
   double dissipation = 1;        // B
   double gradient_scale = 1;     // 1 / slope of lattice_sums()
+  std::shared_ptr<FrozenGeometry> geometry;
 
   auto pair(const auto& p) const {
-    const auto weight = p.j(volume) * p.dW_over_r();
+    const auto weight = p.weight(volume);
     const auto p_j = p.j(pressure);
     const auto jump = p.i(pressure) - p_j;
     const auto smooth =
@@ -68,8 +71,8 @@ struct PressureForceOf : PairOperator<PressureForceOf<Corrected>> {
       return sums((weight * (p.i(pressure) + p_j)) * p.r_ij(), diffusion);
   }
   void particle(auto i, auto force, auto diffusion) const {
-    pressure_acceleration[i] -= ((Corrected ? 1.0 : gradient_scale) / density[i]) * force;
-    density_diffusion[i] = (dissipation * gradient_scale / sound_speed) * diffusion;
+    pressure_acceleration[i] -= ((Corrected ? 1.0 : gradient_scale) / mass[i]) * force;
+    density_diffusion[i] = (dissipation * gradient_scale / (sound_speed * volume[i])) * diffusion;
   }
 };
 
@@ -80,20 +83,23 @@ template <bool Corrected>
 struct VelocityDivergenceOf : PairOperator<VelocityDivergenceOf<Corrected>> {
   In<Vector> velocity{"velocity"};
   In<Scalar> volume{"volume"};
+  In<Scalar> mass{"mass", own_only};
   In<Scalar> density{"density", own_only};
   MatrixIf<Corrected> matrix{"gradient_matrix", own_only, unit("1"), doc("Correction of gradients.")};
   Out<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"), doc("Acceleration by pressure.")};
   Out<Scalar> compression{"compression_rate", unit("kg/m3/s"),
                           doc("Rate of the density by convergence of the velocity.")};
 
-  double sound_speed = 0;     // m/s
-  double limiter = 3.0;       // eta of the paper
-  double least = 0.0;         // smallest beta, also in expansion
-  double most = 1.0;          // B, the largest
-  double gradient_scale = 1;  // 1 / slope of lattice_sums()
+  double reference_density = 0;  // kg/m3
+  double sound_speed = 0;        // m/s
+  double limiter = 3.0;          // eta of the paper
+  double least = 0.0;            // smallest beta, also in expansion
+  double most = 1.0;             // B, the largest
+  double gradient_scale = 1;     // 1 / slope of lattice_sums()
+  std::shared_ptr<FrozenGeometry> geometry;
 
   auto pair(const auto& p) const {
-    const auto weight = p.j(volume) * p.dW_over_r();
+    const auto weight = p.weight(volume);
     const auto v = p.i(velocity) - p.j(velocity);
     const auto v_r = dot(v, p.r_ij());
     const auto jump = -v_r * p.per_r();  // u_L - u_R
@@ -105,8 +111,8 @@ struct VelocityDivergenceOf : PairOperator<VelocityDivergenceOf<Corrected>> {
       return sums(weight * v_r, dissipation);
   }
   void particle(auto i, auto divergence, auto dissipation) const {
-    compression[i] = (Corrected ? 1.0 : gradient_scale) * density[i] * divergence;
-    pressure_acceleration[i] = (-gradient_scale * sound_speed) * dissipation;
+    compression[i] = (Corrected ? 1.0 : gradient_scale) * density[i] * density[i] / mass[i] * divergence;
+    pressure_acceleration[i] = (-gradient_scale * reference_density * sound_speed / mass[i]) * dissipation;
   }
 };
 

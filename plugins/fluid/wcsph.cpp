@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <memory>
+
+#include "shoal/freeze_geometry.hpp"
 
 #include "acoustic_step.hpp"
 #include "advection_step.hpp"
@@ -27,6 +30,7 @@ namespace {
 constexpr At at_shift{"advection", "shift"};
 constexpr At at_apply_shift{"advection", "apply_shift"};
 constexpr At at_density{"advection", "density"};
+constexpr At at_geometry{"advection", "geometry"};
 constexpr At at_filter{"advection", "filter"};
 constexpr At at_forces{"advection", "forces"};
 constexpr At at_acoustic{"advection", "acoustic"};
@@ -67,6 +71,9 @@ struct FluidBody {
   EquationOfState equation_of_state;
   double density, viscosity, sound_speed, max_speed;
   LatticeSums lattice = lattice_sums(b.dimensions(), b.target(body));
+  // Of the acoustic steps in an advection step; in 3D each pass finds it anew (pair_operator.hpp).
+  std::shared_ptr<FrozenGeometry> geometry =
+      b.dimensions() == 2 ? std::make_shared<FrozenGeometry>() : nullptr;
 
   bool has_walls() const { return !walls.empty(); }
   Target itself() const { return b.target(body); }
@@ -118,6 +125,12 @@ struct FluidBody {
     }
   }
 
+  void attach_geometry() const {
+    if (!geometry) return;
+    b.attach<FreezeGeometry>("fluid.pair_geometry", at_geometry, itself(),
+                             [&](auto& op) { op.geometry = geometry; });
+  }
+
   void attach_gradients() const {
     b.attach<GradientMoment>("fluid.gradient_moment", at_filter, itself());
     if (has_walls()) b.attach<WallGradientMoment>("fluid.gradient_moment.walls", at_filter, and_walls());
@@ -155,6 +168,7 @@ struct FluidBody {
       op.viscosity = viscosity;
       op.gradient_scale = 1.0 / lattice.slope;
       if constexpr (requires { op.reference_density; }) op.reference_density = density;
+      if constexpr (requires { op.geometry; }) op.geometry = geometry;
       if constexpr (requires { op.longest_step; })
         op.longest_step = no_slip_walls.empty() ? Force::longest_step_in_the_open : 0.125;
     };
@@ -170,6 +184,7 @@ struct FluidBody {
       op.reference_density = density;
       op.sound_speed = sound_speed;
       op.gradient_scale = 1.0 / lattice.slope;
+      op.geometry = geometry;
       if constexpr (requires { op.dissipation; }) op.dissipation = largest_dissipation();
       if constexpr (requires { op.diffusivity; }) {
         const double ch = sound_speed * itself().smoothing_length;
@@ -227,11 +242,14 @@ struct FluidBody {
     if (physics.stabilisation.value() == "riemann")
       b.attach<VelocityDivergenceOf<Corrected>>("fluid.divergence", at_continuity, itself(), [&](auto& op) {
         riemann(op);
+        op.reference_density = density;
         op.least = physics.least_dissipation;
+        op.geometry = geometry;
       });
     else
       b.attach<ViscousDivergence<Corrected>>("fluid.divergence", at_continuity, itself(), [&](auto& op) {
         op.alpha = physics.artificial_viscosity;
+        op.geometry = geometry;
         op.sound_speed = sound_speed;
         op.reference_density = density;
         op.gradient_scale = 1.0 / lattice.slope;
@@ -283,7 +301,7 @@ double expected_speed(const Wcsph& physics, const Builder& b) {
 }  // namespace
 
 void Wcsph::build(const Builder& b) {
-  b.loop("advection", {"shift", "apply_shift", "density", "filter", "forces", "acoustic"});
+  b.loop("advection", {"shift", "apply_shift", "density", "geometry", "filter", "forces", "acoustic"});
   b.loop("acoustic", at_acoustic, {"predict", "momentum", "kick", "continuity"});
   b.renew_neighbours_in("advection");
 
@@ -310,6 +328,7 @@ void Wcsph::build(const Builder& b) {
     fluid.attach_initial();
     fluid.attach_shift();
     fluid.attach_density();
+    fluid.attach_geometry();
     if (gradient_correction) fluid.attach_gradients();
     fluid.attach_filter();
     fluid.attach_forces();

@@ -5,6 +5,7 @@
 //
 //   loop advection    shift      particles spread evenly (no free surface)
 //                     density    re-initialised by summation
+//                     geometry   of pairs, frozen for the acoustic steps (2D)
 //                     filter     velocities of particles that jitter about the flow
 //                     forces     gravity, viscosity, and what other plugins add to `acceleration`
 //                     acoustic

@@ -174,6 +174,7 @@ void measure_loops(int argc, char** argv) {
   pressure.op.reference_density = scene.constants().reference_density;
   pressure.op.sound_speed = scene.constants().sound_speed;
   Linked<fluid::VelocityDivergence> velocity(scene);
+  velocity.op.reference_density = scene.constants().reference_density;
   velocity.op.sound_speed = scene.constants().sound_speed;
 
   add("eigen", [&] { eigen_loop(fluid, scene.list(), Scene::smoothing_length, scene.constants()); });

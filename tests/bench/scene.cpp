@@ -50,14 +50,15 @@ void Scene::rebuild() {
 void Scene::fill_fields() {
   const double *x = field("position", 3), c = constants_.sound_speed;
   double *v = field("velocity", 3), *rho = field("density", 1), *p = field("pressure", 1);
-  double *volume = field("volume", 1), *g = field("acceleration", 3);
+  double *volume = field("volume", 1), *mass = field("mass", 1), *g = field("acceleration", 3);
   for (std::uint64_t i = 0; i < n_; ++i) {
     v[3 * i] = std::sin(9.0 * x[3 * i + 1]);
     v[3 * i + 1] = -std::sin(7.0 * x[3 * i]);
     v[3 * i + 2] = 0.3 * std::cos(5.0 * x[3 * i + 2]);
     p[i] = 9810.0 * (0.6 - x[3 * i + 2]);
     rho[i] = constants_.reference_density + p[i] / (c * c);
-    volume[i] = constants_.mass / rho[i];
+    mass[i] = constants_.mass;
+    volume[i] = mass[i] / rho[i];
     g[3 * i + 2] = -9.81;
   }
 }

@@ -317,6 +317,7 @@ class OperatorBase : public Parameterised {
     for (std::size_t k = 0; k < results_.size(); ++k) *results_[k] = results[k];
   }
   const shoal_neighbours& neighbours(std::size_t relation) const { return neighbours_[relation]; }
+  const std::vector<shoal_neighbours>& lists() const { return neighbours_; }
   std::size_t n_relations() const { return target_.neighbours.size(); }
 
   std::vector<shoal_access> accesses() const {

@@ -73,6 +73,9 @@ struct Pack {
   /// Reads `lanes` doubles; no alignment is needed.
   static Pack load(const double* p) { return from_raw(simd::load(p)); }
   void store(double* p) const { simd::store(p, v); }
+  /// The same in single precision, rounded to the nearest.
+  static Pack load(const float* p) { return from_raw(simd::load(p)); }
+  void store(float* p) const { simd::store(p, v); }
   /// f(0), f(1), ... in the lanes.
   template <class F>
   static Pack from(F&& f) {

@@ -29,6 +29,10 @@
 // ties the operator to one smoothing kernel (with the target's smoothing length) and compiles it for that alone.
 //     static constexpr const char* pair_geometry = "reference_position";
 // takes distances from another field than `position`.
+//     std::shared_ptr<FrozenGeometry> geometry;
+// for operators of sub-steps, whose `pair` asks p.weight(volume), p.r_ij() and p.r(), but not W() and its like: in 2D they
+// read geometry that was frozen for the step (freeze_geometry.hpp), in some 60 % of the time. In 3D they find it anew: it
+// would take 1.4 kB a particle, and gains nothing once that leaves the caches.
 //
 // Where pairs seldom change (static bodies, the reference configuration) what depends on them alone is worth keeping:
 //     auto store(const auto& p) const { return p.j(volume) * p.grad_W(); }
@@ -38,17 +42,19 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
+#include <memory>
 #include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "shoal/detail/frozen_geometry.hpp"
 #include "shoal/detail/kept_pairs.hpp"
 #include "shoal/detail/row_group.hpp"
 #include "shoal/operator.hpp"
 #include "shoal/pack.hpp"
+#include "shoal/pair.hpp"
 #include "shoal/smoothing_kernel.hpp"
 #include "shoal/vec.hpp"
 
@@ -74,6 +80,19 @@ template <class... Values, class M>
 void add_lanes(Sums<Values...>& sum, const Sums<Values...>& value, M lanes) {
   [&]<std::size_t... k>(std::index_sequence<k...>) {
     (add_lanes(std::get<k>(sum.values), std::get<k>(value.values), lanes), ...);
+  }
+  (std::index_sequence_for<Values...>{});
+}
+
+// Adds the pairs of all lanes.
+template <class T>
+void add(T& sum, const T& value) {
+  sum = sum + value;
+}
+template <class... Values>
+void add(Sums<Values...>& sum, const Sums<Values...>& value) {
+  [&]<std::size_t... k>(std::index_sequence<k...>) {
+    (add(std::get<k>(sum.values), std::get<k>(value.values)), ...);
   }
   (std::index_sequence_for<Values...>{});
 }
@@ -104,111 +123,6 @@ void finish_particle(const Op& op, Particle<D> i, const Sums<Values...>& sum) {
 
 }  // namespace pair_loop
 
-// Particles, one in each lane: `index` of them, which follow one another or not.
-template <int D, bool Consecutive>
-struct ParticlePack {
-  static constexpr int dimensions = D;
-  const std::uint32_t* index;
-
-  // The N numbers of each particle. These are loads that the compiler can take out of the loop over neighbours.
-  template <int N>
-  void read(const double* field, Pack* out) const {
-    if constexpr (Consecutive)
-      load_tuple<N>(field + std::size_t{index[0]} * N, out);
-    else
-      for (int k = 0; k < N; ++k)
-        out[k] = Pack::from([&](int lane) { return field[std::size_t{index[lane]} * N + std::size_t(k)]; });
-  }
-};
-
-// One particle i and one neighbour j (R = double); or, in the lanes of a pack (R = Pack), one particle and `lanes` of its
-// neighbours (Own = Particle), or `lanes` particles with a neighbour each (Own = ParticlePack).
-template <int D, class R, class Kernel, class Own = Particle<D>>
-class Pair {
- public:
-  static constexpr int dimensions = D;
-  using RealType = R;
-  using Indices = typename RealTraits<R>::IndexType;
-  using OwnPosition = std::conditional_t<std::is_same_v<Own, Particle<D>>, Vec<D>, Vec<D, Pack>>;
-
-  Pair(const Kernel& kernel, std::size_t relation, Own i, const OwnPosition& x_i,
-       const double* x_of_neighbours, Indices j)
-      : kernel_(kernel), relation_(relation), i_(i), j_(j), r_ij_(x_i - gather_vec<D>(x_of_neighbours, j)) {
-    // Coincident particles have no direction: the limit makes e = 0 there, not NaN.
-    const R squared = max(R(1e-200), squared_norm(r_ij_));
-    if constexpr (simd::fast_inverse_sqrt && !std::is_same_v<R, double>) {
-      per_r_ = inverse_sqrt(squared);
-      r_ = squared * per_r_;
-    } else {
-      r_ = sqrt(squared);
-      per_r_ = R(1.0) / r_;
-    }
-  }
-
-  // Distance |r_i - r_j| in m.
-  R r() const { return r_; }
-  // 1 / r, which costs less than a division.
-  R per_r() const { return per_r_; }
-  // r_i - r_j in m.
-  const Vec<D, R>& r_ij() const { return r_ij_; }
-  // Unit vector from j to i.
-  Vec<D, R> e() const { return per_r_ * r_ij_; }
-  // Smoothing kernel in 1/m^D, its derivative dW/dr <= 0, (dW/dr)/r, and its gradient with respect to r_i.
-  R W() const { return kernel_.w(r_); }
-  R dW() const { return kernel_.dw(r_); }
-  R dW_over_r() const { return kernel_.dw_over_r(r_); }
-  Vec<D, R> grad_W() const { return dW_over_r() * r_ij_; }
-  // Smoothing length in m.
-  double h() const { return kernel_.h(); }
-
-  // The particle's own value of a field.
-  template <class T, bool Writable>
-  auto i(const Field<T, Writable>& field) const {
-    if constexpr (std::is_same_v<Own, Particle<D>>)
-      return field[i_];
-    else
-      return read<T>(
-          [&]<int N>(std::integral_constant<int, N>, R* out) { i_.template read<N>(field.data(), out); });
-  }
-  // The neighbours' values of a field.
-  template <class T, bool Writable>
-  auto j(const Field<T, Writable>& field) const {
-    const double* values = field.of_neighbours(relation_);
-    return read<T>([&]<int N>(std::integral_constant<int, N>, R* out) { gather_tuple<N>(values, j_, out); });
-  }
-
- private:
-  // What a field holds, of numbers that `numbers` writes.
-  template <class T, class F>
-  static auto read(const F& numbers) {
-    if constexpr (std::is_same_v<T, Scalar>) {
-      R value;
-      numbers(std::integral_constant<int, 1>{}, &value);
-      return value;
-    } else if constexpr (std::is_same_v<T, Vector>) {
-      Vec<D, R> value;
-      numbers(std::integral_constant<int, D>{}, value.e);
-      return value;
-    } else if constexpr (std::is_same_v<T, Matrix>) {
-      Mat<D, R> value;
-      numbers(std::integral_constant<int, D * D>{}, value.e);
-      return value;
-    } else {
-      constexpr auto n = D == 2 ? impl::array_size<T>.in_2d : impl::array_size<T>.in_3d;
-      std::array<R, n> value;
-      numbers(std::integral_constant<int, static_cast<int>(n)>{}, value.data());
-      return value;
-    }
-  }
-
-  const Kernel& kernel_;
-  std::size_t relation_;
-  Own i_;
-  Indices j_;
-  Vec<D, R> r_ij_;
-  R r_, per_r_;
-};
-
 template <class Derived>
 class PairOperator : public OperatorBase {
  public:
@@ -217,12 +131,19 @@ class PairOperator : public OperatorBase {
   // Packs of neighbours; what a run uses.
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {
-    with_own_kernel<D>([&](const auto& kernel) {
-      if constexpr (side_by_side<D>())
-        columns<D>(kernel, chunk);
+    if constexpr (D == 2 && reads_frozen()) {
+      if (self().geometry)
+        frozen_columns<D>(*self().geometry, chunk);
       else
-        rows<D, Pack>(kernel, chunk);
-    });
+        run_chunk_scalar<D>(chunk);
+    } else {
+      with_own_kernel<D>([&](const auto& kernel) {
+        if constexpr (side_by_side<D>())
+          columns<D>(kernel, chunk);
+        else
+          rows<D, Pack>(kernel, chunk);
+      });
+    }
   }
   // One neighbour after the other: the reference for tests.
   template <int D>
@@ -254,7 +175,6 @@ class PairOperator : public OperatorBase {
  protected:
   PairOperator() : OperatorBase(true) {}
 
- private:
   template <int D, class F>
   decltype(auto) with_own_kernel(F&& f) const {
     if constexpr (requires { typename Derived::template Kernel<D>; })
@@ -262,12 +182,18 @@ class PairOperator : public OperatorBase {
     else
       return with_kernel<D>(target().smoothing_kernel, smoothing_length(), std::forward<F>(f));
   }
+  const In<Vector>& position() const { return position_; }
 
+ private:
   static constexpr const char* geometry() {
     if constexpr (requires { Derived::pair_geometry; })
       return Derived::pair_geometry;
     else
       return "position";
+  }
+
+  static constexpr bool reads_frozen() {
+    return requires(const Derived& op) { op.geometry->first_group(0); };
   }
 
   template <class P>
@@ -377,6 +303,30 @@ class PairOperator : public OperatorBase {
         for (int lane = n; lane < lanes; ++lane) index[lane] = index[n - 1];
         group(n);
       }
+    }
+  }
+
+  // The same with what FreezeGeometry has written.
+  template <int D>
+  [[gnu::noinline, gnu::flatten]] void frozen_columns(FrozenGeometry& geometry,
+                                                      const shoal_chunk& chunk) const {
+    using Own = ParticlePack<D, true>;
+    using P = FrozenPair<D, Own>;
+    using Result = decltype(self().pair(std::declval<const P&>()));
+    const double h = smoothing_length();
+    const std::uint64_t end = geometry.first_group(chunk.end);
+    for (std::uint64_t group = geometry.first_group(chunk.begin); group < end; ++group) {
+      const auto first = static_cast<std::uint32_t>(group * lanes);
+      Result sum{};
+      for (std::size_t k = 0; k < n_relations(); ++k) {
+        FrozenGeometry::Column column = geometry.columns(k, group);
+        for (std::uint64_t m = geometry.n_columns(k, group); m > 0; --m, column.advance(D))
+          pair_loop::add(sum, self().pair(P(h, k, Own{&first}, column.neighbours, column.numbers)));
+      }
+      const pair_loop::Lanes<Result> sums(sum);
+      for (int lane = 0; lane < geometry.rows_in(group); ++lane)
+        pair_loop::finish_particle(
+            self(), Particle<D>{first + static_cast<std::uint32_t>(lane), chunk.partial}, sums.of(lane));
     }
   }
 

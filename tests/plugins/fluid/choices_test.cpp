@@ -31,6 +31,7 @@ Body disordered(int dimensions) {
   body.set_each("volume", 1, [&](std::size_t i, std::size_t) {
     return std::pow(dx, dimensions) * (1.0 + 0.02 * wavy(i, 0.9));
   });
+  set_masses(body);
   body.set_each("velocity", d, [&](std::size_t i, std::size_t a) { return wavy(i, 2.1 + double(a)); });
   body.set_each("last_pressure_acceleration", d,
                 [&](std::size_t i, std::size_t a) { return 9.0 * wavy(i, 0.4 + double(a)); });
@@ -175,8 +176,7 @@ TEST_CASE(
     check_equal(body["acceleration"], force, 1e-13);
     double torque = 0, size = 0;
     for (std::size_t i = 0; i < body.size(); ++i) {
-      const double m = body["volume"][i] * body["density"][i], *x = &body["position"][i * d],
-                   *a = &body["acceleration"][i * d];
+      const double m = body["mass"][i], *x = &body["position"][i * d], *a = &body["acceleration"][i * d];
       torque += m * (x[0] * a[1] - x[1] * a[0]);
       size += std::abs(m * x[0] * a[1]);
     }
@@ -187,6 +187,7 @@ TEST_CASE(
   Body body(2, lattice(2, fine, {0, 0}, {1.5, 1.5}));
   body.set_each("density", 1, [](std::size_t, std::size_t) { return rho0; });
   body.set_each("volume", 1, [&](std::size_t, std::size_t) { return fine * fine; });
+  set_masses(body);
   body.set_each("velocity", 2, [&](std::size_t i, std::size_t a) {
     return a == 0 ? std::pow(body["position"][2 * i + 1], 2) : 0.0;
   });

@@ -23,6 +23,7 @@ Body water(int dimensions) {
                                         : lattice(3, dx, {0, 0, 0}, {0.6, 0.6, 0.6}, 0.2));
   body.set("volume", std::pow(dx, dimensions));
   body.set("density", rho0);
+  set_masses(body);
   return body;
 }
 

@@ -93,6 +93,7 @@ TEST_CASE(
   Body wall(2, lattice(2, dx, {0, -0.2}, {1, 0}));
   water.set("volume", dx * dx);
   water.set("density", rho0);
+  set_masses(water);
   wall.set("volume", dx * dx);
   wall.set_each("normal", 2, [](auto, auto a) { return a == 1 ? 1.0 : 0.0; });
   wall.set_each("signed_distance", 1, [&](auto j, auto) { return wall["position"][2 * j + 1]; });

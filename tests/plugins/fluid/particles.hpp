@@ -46,6 +46,12 @@ inline double plain_dw(int dimensions, double h, double r) {
   return q < 2.0 ? a / h * (-5.0 * q) * std::pow(1.0 - q / 2.0, 3) : 0.0;
 }
 
+// Masses that go with the volumes and densities.
+inline void set_masses(Body& body) {
+  auto &volume = body["volume"], &density = body["density"];
+  body.set_each("mass", 1, [&](std::size_t i, std::size_t) { return volume[i] * density[i]; });
+}
+
 // For every i, calls visit(i, j, r, e_ij) for all neighbours j.
 inline void for_all_pairs(
     Body& own, Body& other, double cutoff,

@@ -33,6 +33,8 @@ inline constexpr __mmask8 full_mask = 0xFF;
 inline Raw broadcast(double x) { return _mm512_set1_pd(x); }
 inline Raw load(const double* p) { return _mm512_loadu_pd(p); }
 inline void store(double* p, Raw a) { _mm512_storeu_pd(p, a); }
+inline Raw load(const float* p) { return _mm512_maskz_cvtps_pd(full_mask, _mm256_loadu_ps(p)); }
+inline void store(float* p, Raw a) { _mm256_storeu_ps(p, _mm512_maskz_cvtpd_ps(full_mask, a)); }
 inline double get_lane(Raw a, int k) { return a[k]; }
 inline void set_lane(Raw& a, int k, double x) { a[k] = x; }
 inline RawMask less(Raw a, Raw b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
@@ -194,6 +196,8 @@ using RawIndex = __m128i;
 inline Raw broadcast(double x) { return _mm256_set1_pd(x); }
 inline Raw load(const double* p) { return _mm256_loadu_pd(p); }
 inline void store(double* p, Raw a) { _mm256_storeu_pd(p, a); }
+inline Raw load(const float* p) { return _mm256_cvtps_pd(_mm_loadu_ps(p)); }
+inline void store(float* p, Raw a) { _mm_storeu_ps(p, _mm256_cvtpd_ps(a)); }
 inline double get_lane(Raw a, int k) { return a[k]; }
 inline void set_lane(Raw& a, int k, double x) { a[k] = x; }
 inline RawMask less(Raw a, Raw b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
@@ -336,6 +340,10 @@ inline Double2 select_half(Long2 m, Double2 a, Double2 b) {
 inline Raw broadcast(double x) { return {{Double2{x, x}, Double2{x, x}}}; }
 inline Raw load(const double* p) { return {{Double2{p[0], p[1]}, Double2{p[2], p[3]}}}; }
 inline void store(double* p, Raw a) { std::memcpy(p, a.half, sizeof a.half); }
+inline Raw load(const float* p) { return {{Double2{p[0], p[1]}, Double2{p[2], p[3]}}}; }
+inline void store(float* p, Raw a) {
+  for (int k = 0; k < lanes; ++k) p[k] = static_cast<float>(a.half[k / 2][k % 2]);
+}
 inline double get_lane(Raw a, int k) { return a.half[k / 2][k % 2]; }
 inline void set_lane(Raw& a, int k, double x) { a.half[k / 2][k % 2] = x; }
 inline RawMask less(Raw a, Raw b) { return {{Long2(a.half[0] < b.half[0]), Long2(a.half[1] < b.half[1])}}; }
