@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Shoal authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Density re-initialisation, once in an advection step (Zhang, Hu, Adams 2017; Rezavand, Zhang, Hu 2020):
+// Density re-initialisation, at most once in an advection step (Zhang, Hu, Adams 2017; Rezavand, Zhang, Hu 2020):
 //   rho_s = rho0 sum_j W_ij / sigma0,    sigma0 = sum of W over the lattice of the initial spacing, itself included
 //   rho_i = rho_s                                          where no free surface is
 //   rho_f = rho_s + max(0, rho_i - rho_s) rho0 / rho_i     with a free surface: where the support is cut off, the
@@ -9,17 +9,18 @@
 // so that errors of the continuity equation do not add up over many steps. The paper takes rho_f in each step. On
 // disordered particles rho_s has a noise of some 0.2 %, of which rho_f keeps the upper half: densities and with them
 // the mean pressure rise, and each correction sends out a sound wave. Here rho_i is kept within a tolerance of rho_f
-// (1 % by default), and of what is beyond only a share is taken back in each step (5 % by default).
+// (1 % by default), and of what is beyond only a share is taken back in each step (5 % by default), in every second one
+// twice of it.
 #pragma once
 
 #include <algorithm>
 
-#include "shoal/pair_operator.hpp"
+#include "intermittent.hpp"
 
 namespace shoal::fluid {
 
 // sum_j V_j W_ij of the walls; runs before DensityReinitialisation, which adds it.
-struct WallDensity : PairOperator<WallDensity> {
+struct WallDensity : IntermittentPairOperator<WallDensity> {
   In<Scalar> wall_volume{"volume", neighbours_only};
   Out<Scalar> wall_sum{"wall_density_sum", unit("1"), doc("Sum of V W over wall particles."), derived};
 
@@ -28,7 +29,7 @@ struct WallDensity : PairOperator<WallDensity> {
 };
 
 template <class Derived>
-struct DensitySum : PairOperator<Derived> {
+struct DensitySum : IntermittentPairOperator<Derived> {
   In<Scalar> mass{"mass", own_only};
   InOut<Scalar> density{"density"};
   Out<Scalar> volume{"volume"};

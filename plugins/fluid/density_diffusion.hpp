@@ -34,6 +34,7 @@ struct DiffusivePressureForce : PairOperator<DiffusivePressureForce<Kind, Correc
   In<Scalar> pressure{"pressure"};
   In<Scalar> volume{"volume"};
   In<Scalar> mass{"mass", own_only};
+  In<Scalar> density{"density", own_only};
   VectorIf<Kind == Diffusion::antuono> last_acceleration{
       "last_pressure_acceleration", unit("m/s2"), doc("Acceleration by pressure in the last acoustic step.")};
   InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"),
@@ -74,7 +75,7 @@ struct DiffusivePressureForce : PairOperator<DiffusivePressureForce<Kind, Correc
   void particle(auto i, auto force, double diffused) const {
     pressure_acceleration[i] -= ((Corrected ? 1.0 : gradient_scale) / mass[i]) * force;
     density_diffusion[i] =
-        (2.0 * gradient_scale * diffusivity / (volume[i] * sound_speed * sound_speed)) * diffused;
+        (2.0 * gradient_scale * diffusivity / (sound_speed * sound_speed) * density[i] / mass[i]) * diffused;
   }
 };
 

@@ -43,6 +43,7 @@ struct PressureForceOf : PairOperator<PressureForceOf<Corrected>> {
   In<Scalar> pressure{"pressure"};
   In<Scalar> volume{"volume"};
   In<Scalar> mass{"mass", own_only};
+  In<Scalar> density{"density", own_only};
   In<Vector> last_acceleration{"last_pressure_acceleration", unit("m/s2"),
                                doc("Acceleration by pressure in the last acoustic step.")};
   InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"),
@@ -71,8 +72,9 @@ struct PressureForceOf : PairOperator<PressureForceOf<Corrected>> {
       return sums((weight * (p.i(pressure) + p_j)) * p.r_ij(), diffusion);
   }
   void particle(auto i, auto force, auto diffusion) const {
-    pressure_acceleration[i] -= ((Corrected ? 1.0 : gradient_scale) / mass[i]) * force;
-    density_diffusion[i] = (dissipation * gradient_scale / (sound_speed * volume[i])) * diffusion;
+    const double per_mass = 1.0 / mass[i];
+    pressure_acceleration[i] -= ((Corrected ? 1.0 : gradient_scale) * per_mass) * force;
+    density_diffusion[i] = (dissipation * gradient_scale / sound_speed * density[i] * per_mass) * diffusion;
   }
 };
 
@@ -111,8 +113,9 @@ struct VelocityDivergenceOf : PairOperator<VelocityDivergenceOf<Corrected>> {
       return sums(weight * v_r, dissipation);
   }
   void particle(auto i, auto divergence, auto dissipation) const {
-    compression[i] = (Corrected ? 1.0 : gradient_scale) * density[i] * density[i] / mass[i] * divergence;
-    pressure_acceleration[i] = (-gradient_scale * reference_density * sound_speed / mass[i]) * dissipation;
+    const double per_mass = 1.0 / mass[i];
+    compression[i] = ((Corrected ? 1.0 : gradient_scale) * density[i] * density[i] * per_mass) * divergence;
+    pressure_acceleration[i] = (-gradient_scale * reference_density * sound_speed * per_mass) * dissipation;
   }
 };
 

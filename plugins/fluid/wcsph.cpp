@@ -110,15 +110,19 @@ struct FluidBody {
   void attach_density() const {
     if (!physics.density_summation) return;
     const Target target = itself();
+    const std::uint64_t density_interval = physics.free_surface ? 2 : 1;
     const auto setup = [&](auto& op) {
       op.reference_density = density;
       op.per_lattice_sum = 1.0 / lattice.w;
       op.free_surface = physics.free_surface;
-      op.relaxation = physics.free_surface ? physics.summation_relaxation : 1.0;
+      op.interval = density_interval;
+      const double share = physics.free_surface ? physics.summation_relaxation.value() : 1.0;
+      op.relaxation = std::min(1.0, static_cast<double>(density_interval) * share);
       op.tolerance = physics.free_surface ? physics.summation_tolerance * density : 0.0;
     };
     if (has_walls()) {
-      b.attach<WallDensity>("fluid.density.walls", at_density, and_walls());
+      b.attach<WallDensity>("fluid.density.walls", at_density, and_walls(),
+                            [&](auto& op) { op.interval = density_interval; });
       b.attach<DensityReinitialisationAtWalls>("fluid.density", at_density, target, setup);
     } else {
       b.attach<DensityReinitialisation>("fluid.density", at_density, target, setup);
@@ -139,10 +143,13 @@ struct FluidBody {
   }
 
   void attach_filter() const {
-    const double strength = physics.velocity_filter.value_or(physics.free_surface ? 0.3 : 0.0);
+    const double strength = physics.velocity_filter.value_or(physics.free_surface ? 0.4 : 0.0);
     if (strength == 0.0) return;
-    b.attach<VelocityFluctuation>("fluid.velocity_fluctuation", at_filter, itself());
+    constexpr std::uint64_t interval = 2;
+    b.attach<VelocityFluctuation>("fluid.velocity_fluctuation", at_filter, itself(),
+                                  [&](auto& op) { op.interval = interval; });
     b.attach<VelocityFilter>("fluid.velocity_filter", at_filter, itself(), [&](auto& op) {
+      op.interval = interval;
       op.strength = strength;
       op.reference_density = density;
     });

@@ -59,11 +59,11 @@ struct Wcsph final : Physics {
   Param<double> velocity_filter{"velocity_filter",
                                 "1",
                                 "Strength of the filter that damps what particles do beyond the smooth flow "
-                                "around them; 0: none. Without "
-                                "it 0.3 with a free surface, else 0. Stable below 0.8.",
+                                "around them, in every second advection step; 0: none. Without "
+                                "it 0.4 with a free surface, else 0. Stable below 0.8.",
                                 between(0.0, 0.8),
                                 optional,
-                                example("0.3")};
+                                example("0.4")};
   Param<bool> gradient_correction{"gradient_correction", nullptr,
                                   "Whether pressure and divergence use corrected gradients.",
                                   default_to(false)};

@@ -91,15 +91,15 @@ class PairFields {
   Indices j_;
 };
 
-// The distance of a pair.
-template <int D, class R>
+// The distance of a pair; Single: of components in single precision.
+template <int D, class R, bool Single = false>
 class PairVector {
  public:
   explicit PairVector(const Vec<D, R>& r_ij) : r_ij_(r_ij) {
     // Coincident particles have no direction: the limit makes e = 0 there, not NaN.
     const R squared = max(R(1e-200), squared_norm(r_ij_));
     if constexpr (simd::fast_inverse_sqrt && !std::is_same_v<R, double>) {
-      per_r_ = inverse_sqrt(squared);
+      per_r_ = Single ? inverse_sqrt_single(squared) : inverse_sqrt(squared);
       r_ = squared * per_r_;
     } else {
       r_ = sqrt(squared);
@@ -152,11 +152,11 @@ class Pair : public PairFields<D, R, Own>, public PairVector<D, R> {
 
 // A pair of frozen geometry (shoal/freeze_geometry.hpp).
 template <int D, class Own>
-class FrozenPair : public PairFields<D, Pack, Own>, public PairVector<D, Pack> {
+class FrozenPair : public PairFields<D, Pack, Own>, public PairVector<D, Pack, true> {
  public:
   FrozenPair(double h, std::size_t relation, Own i, const std::uint32_t* neighbours, const float* numbers)
       : PairFields<D, Pack, Own>(relation, i, IndexPack::load(neighbours)),
-        PairVector<D, Pack>(distance(numbers)),
+        PairVector<D, Pack, true>(distance(numbers)),
         h_(h),
         weight_(Pack::load(numbers)) {}
 
