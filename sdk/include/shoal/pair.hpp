@@ -25,7 +25,8 @@ struct ParticlePack {
   static constexpr int dimensions = D;
   const std::uint32_t* index;
 
-  // The N numbers of each particle; of consecutive ones only index[0] is looked at. These are loads that the compiler can take out of the loop over neighbours.
+  // The N numbers of each particle; of consecutive ones only index[0] is looked at. These are loads that the compiler can
+  // take out of the loop over neighbours.
   template <int N>
   void read(const double* field, Pack* out) const {
     if constexpr (Consecutive)
