@@ -367,10 +367,10 @@ inline Raw sqrt(Raw a) {
   return a;
 }
 inline constexpr bool fast_inverse_sqrt = false;
-inline Raw inverse_sqrt(Raw a) {
-  for (int k = 0; k < lanes; ++k) set_lane(a, k, 1.0 / std::sqrt(get_lane(a, k)));
-  return a;
-}
+// Nothing here approximates a root in less time: both are the root of each lane
+// and a division.
+inline Raw inverse_sqrt(Raw a) { return broadcast(1.0) / sqrt(a); }
+inline Raw inverse_sqrt_single(Raw a) { return inverse_sqrt(a); }
 inline Raw reciprocal(Raw a) { return broadcast(1.0) / a; }
 inline Raw abs(Raw a) {
   const Long2 magnitude = {0x7FFFFFFFFFFFFFFFLL, 0x7FFFFFFFFFFFFFFFLL};
