@@ -63,15 +63,18 @@ struct Liquid final : Material {
 
   double c_ = 0;
 
-  inline static const shoal_equation_of_state table_{
-      sizeof(shoal_equation_of_state),
-      0,
-      [](void* self) { return of(self).density.value(); },
-      [](void* self) { return of(self).viscosity.value(); },
-      [](void* self, double suggested) { return of(self).c_ = of(self).sound_speed.value_or(suggested); },
-      [](void* self, std::uint64_t n, const double* rho, double* p) { of(self).pressures(n, rho, p); },
-      [](void* self, std::uint64_t n, const double* p, double* rho) { of(self).densities(n, p, rho); }};
+  static const shoal_equation_of_state table_;
 };
+
+// Outside of the class, in whose static initialisers it is still incomplete.
+inline const shoal_equation_of_state Liquid::table_{
+    sizeof(shoal_equation_of_state),
+    0,
+    [](void* self) { return of(self).density.value(); },
+    [](void* self) { return of(self).viscosity.value(); },
+    [](void* self, double suggested) { return of(self).c_ = of(self).sound_speed.value_or(suggested); },
+    [](void* self, std::uint64_t n, const double* rho, double* p) { of(self).pressures(n, rho, p); },
+    [](void* self, std::uint64_t n, const double* p, double* rho) { of(self).densities(n, p, rho); }};
 
 // A solid wall. Its particles do not move by themselves; their velocity is that of the wall's surface.
 struct Wall final : Material {
