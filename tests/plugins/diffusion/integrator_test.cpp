@@ -132,7 +132,8 @@ TEST_CASE("auto takes rk2 where the accuracy allows short steps only, rkl2 where
 }
 
 TEST_CASE("a wrong ratio of the measured costs makes a step of auto little dearer") {
-  for (const auto& [wrong, bound] : {std::pair{2.0, 0.08}, std::pair{4.0, 0.16}}) {
+  for (const auto& [ratio, bound] : {std::pair{2.0, 0.08}, std::pair{4.0, 0.16}}) {
+    const double wrong = ratio;  // which a lambda may capture; a binding only in later C++
     double worst = 0;
     for (double length = 1.0; length < 31.0; length += 0.05)  // over the longest step of rk2
       for (double other = 0.1; other < 1e4; other *= 1.25)

@@ -73,7 +73,8 @@ class Object {
         REQUIRE_MESSAGE((p.flags & SHOAL_PARAMETER_REQUIRED) == 0, p.key);
       values_.push_back(value);
     }
-    for (const auto& [key, value] : given) {
+    for (const auto& entry : given) {
+      const auto& key = entry.first;  // not a binding: the message is put together in a lambda
       bool known = false;
       for (const shoal_parameter& p : table) known = known || key == p.key;
       REQUIRE_MESSAGE(known, key);

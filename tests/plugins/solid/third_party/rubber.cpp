@@ -65,25 +65,27 @@ struct Active final : Material {
   OwnedMaterial passive_;
   const shoal_stress_law* law_ = nullptr;
 
-  inline static const shoal_stress_law table_{
-      sizeof(shoal_stress_law),
-      0,
-      [](void* self, std::uint32_t kinematics, std::uint32_t* n) {
-        return of(self).law_->fields(of(self).inner(), kinematics, n);
-      },
-      [](void* self, std::uint32_t kinematics, std::uint64_t n, const double* position,
-         double* const* fields) {
-        return of(self).law_->initialise(of(self).inner(), kinematics, n, position, fields);
-      },
-      [](void* self, std::uint32_t kinematics, shoal_elastic_constants* constants) {
-        of(self).law_->constants(of(self).inner(), kinematics, constants);
-      },
-      [](void* self, const shoal_stress_block* block) { return of(self).stress(*block); },
-      [](void* self, std::uint64_t n, const double* J, double* p) {
-        of(self).law_->volumetric_pressure(of(self).inner(), n, J, p);
-      },
-      nullptr};
+  static const shoal_stress_law table_;
 };
+
+// Outside of the class, in whose static initialisers it is still incomplete.
+const shoal_stress_law Active::table_{
+    sizeof(shoal_stress_law),
+    0,
+    [](void* self, std::uint32_t kinematics, std::uint32_t* n) {
+      return of(self).law_->fields(of(self).inner(), kinematics, n);
+    },
+    [](void* self, std::uint32_t kinematics, std::uint64_t n, const double* position, double* const* fields) {
+      return of(self).law_->initialise(of(self).inner(), kinematics, n, position, fields);
+    },
+    [](void* self, std::uint32_t kinematics, shoal_elastic_constants* constants) {
+      of(self).law_->constants(of(self).inner(), kinematics, constants);
+    },
+    [](void* self, const shoal_stress_block* block) { return of(self).stress(*block); },
+    [](void* self, std::uint64_t n, const double* J, double* p) {
+      of(self).law_->volumetric_pressure(of(self).inner(), n, J, p);
+    },
+    nullptr};
 
 }  // namespace
 
