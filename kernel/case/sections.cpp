@@ -164,8 +164,8 @@ const shoal_type& probe_table() {
 }
 
 const shoal_type& reference_table() {
-  static const std::vector<const char*> measures{"rms",   "relative_rms", "max",     "peak",
-                                                 "final", "mean",         "arrival", "period"};
+  static const std::vector<const char*> measures{"rms",  "relative_rms", "max",    "peak",     "final",
+                                                 "mean", "arrival",      "period", "amplitude"};
   static const std::vector<shoal_parameter> rows{
       row(SHOAL_TEXT, "probe", nullptr, required, nullptr, "Name of the probe that is compared.", "front"),
       row(SHOAL_TEXT, "column", nullptr, 0, nullptr, "Column of the probe; its first without this key.",
@@ -191,7 +191,8 @@ const shoal_type& reference_table() {
               "difference of the "
               "largest values; final: difference at the last time; mean: mean magnitude of the difference; "
               "arrival: of the times at which half the reference's largest value is reached; period: of "
-              "the mean times between rises through the mean.",
+              "the mean times between rises through the mean; amplitude: of half the differences between "
+              "largest and least value.",
               "max"),
           measures),
       row(SHOAL_REAL, "tolerance", "1", required | positive, nullptr,

@@ -15,8 +15,8 @@ namespace shoal::kernel {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array<std::string_view, 8> measure_names{"rms",   "relative_rms", "max",     "peak",
-                                                        "final", "mean",         "arrival", "period"};
+constexpr std::array<std::string_view, 9> measure_names{"rms",  "relative_rms", "max",    "peak",     "final",
+                                                        "mean", "arrival",      "period", "amplitude"};
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
@@ -112,7 +112,8 @@ double difference(ErrorMeasure measure, const Pairs& pairs) {
       return sum / static_cast<double>(differences.size());
     }
     case ErrorMeasure::arrival:
-    case ErrorMeasure::period: return std::abs(differences.front());
+    case ErrorMeasure::period:
+    case ErrorMeasure::amplitude: return std::abs(differences.front());
     case ErrorMeasure::rms:
     case ErrorMeasure::relative_rms: break;
   }
@@ -194,8 +195,13 @@ Series averaged(const Series& series, double window) {
   return smooth;
 }
 
-// The one number of a series that `arrival` or `period` compare; nothing if it has none.
-std::optional<double> time_of(ErrorMeasure measure, const Series& series, double level) {
+// The one number of a series that `arrival`, `period` or `amplitude` compare; nothing if it has none.
+std::optional<double> number_of(ErrorMeasure measure, const Series& series, double level) {
+  if (measure == ErrorMeasure::amplitude) {
+    if (series.values.empty()) return std::nullopt;
+    const auto [least, largest] = std::minmax_element(series.values.begin(), series.values.end());
+    return 0.5 * (*largest - *least);
+  }
   if (measure == ErrorMeasure::arrival) {
     if (!series.values.empty() && series.values.front() >= level) return series.times.front();
     const std::vector<double> times = rises(series, level);
@@ -207,12 +213,12 @@ std::optional<double> time_of(ErrorMeasure measure, const Series& series, double
   return (times.back() - times.front()) / static_cast<double>(times.size() - 1);
 }
 
-Pairs time_pairs(const ReferenceSpecification& specification, const Series& sampled, const Series& known) {
+Pairs number_pairs(const ReferenceSpecification& specification, const Series& sampled, const Series& known) {
   Pairs pairs;
   if (known.values.empty()) return pairs;
   const double level = 0.5 * *std::max_element(known.values.begin(), known.values.end());
-  const auto got = time_of(specification.measure, within(specification, sampled), level);
-  const auto wanted = time_of(specification.measure, known, level);
+  const auto got = number_of(specification.measure, within(specification, sampled), level);
+  const auto wanted = number_of(specification.measure, known, level);
   if (got && wanted) pairs.add(*got, *wanted);
   return pairs;
 }
@@ -277,8 +283,9 @@ ReferenceResult compare(const ReferenceSpecification& specification, const Serie
   if (specification.measure == ErrorMeasure::peak) {
     pairs = peak_pairs(specification, sampled, known);
   } else if (specification.measure == ErrorMeasure::arrival ||
-             specification.measure == ErrorMeasure::period) {
-    pairs = time_pairs(specification, sampled, known);
+             specification.measure == ErrorMeasure::period ||
+             specification.measure == ErrorMeasure::amplitude) {
+    pairs = number_pairs(specification, sampled, known);
   } else {
     for (std::size_t k = 0; k < known.times.size(); ++k)
       pairs.add(value_at(sampled, known.times[k]), known.values[k]);

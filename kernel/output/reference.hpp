@@ -25,10 +25,11 @@ enum class ErrorMeasure {
   last,          ///< difference at the last point of the reference, over the |reference| there ("final")
   mean,          ///< mean of the magnitudes of the differences, over the largest |reference|
   arrival,  ///< of the times of the first rise through half the reference's largest value, over the reference's
-  period    ///< of the mean times between rises through the series' means, over the reference's
+  period,    ///< of the mean times between rises through the series' means, over the reference's
+  amplitude  ///< of half the differences between largest and least value, over the reference's
 };
 
-/// rms, relative_rms, max, peak, final, mean, arrival, period.
+/// rms, relative_rms, max, peak, final, mean, arrival, period, amplitude.
 std::optional<ErrorMeasure> error_measure(std::string_view name);
 std::string_view name_of(ErrorMeasure measure);
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "constraints.hpp"
 
+#include "held_surface.hpp"
 #include "stages.hpp"
 
 namespace shoal::solid {
@@ -68,14 +69,27 @@ void attach_on_demand(const Builder& b, BodyIndex body, const Region& region,
 
 void Clamp::build(const Builder& b) {
   declare_loop(b);
+  if (built_into.is_set() && (where.is_set() || within.is_set() || axes.is_set()))
+    throw CaseError(
+        built_into.place() +
+        ": built_into holds all that is in its shape, along all axes; leave out where, within and "
+        "axes, or make another solid.clamp of them");
   for (const BodyIndex body : bodies.value()) {
+    const auto region = [&] {
+      Region chosen = region_of(where, built_into.is_set() ? built_into : within, b.dimensions());
+      if (built_into.is_set()) chosen.margin = HeldSurface::margin(b.body(body).spacing);
+      return chosen;
+    };
+    const HeldRegions held = held_regions(b, body);
+    if (built_into.is_set()) held->push_back(region());
     const auto setup = [&](PrescribedMotion& op) {
-      op.region.region = region_of(where, within, b.dimensions());
+      op.kept = held;
+      op.region.region = region();
       op.axes = axes_of(axes, b.dimensions());
     };
     b.attach<PrescribedMotion>("solid.clamp", {SHOAL_INITIAL, "constraints"}, b.target(body), setup);
     b.attach<PrescribedMotion>("solid.clamp", at_constraints, b.target(body), setup);
-    attach_on_demand(b, body, region_of(where, within, b.dimensions()), axes_of(axes, b.dimensions()));
+    attach_on_demand(b, body, region(), axes_of(axes, b.dimensions()));
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "region.hpp"
@@ -32,6 +33,7 @@ struct PrescribedMotion : ParticleOperator<PrescribedMotion> {
   VectorExpression given;
   std::array<bool, 3> axes{true, true, true};
   bool half_step = false;
+  std::shared_ptr<void> kept;  // what else lives as long as the operator
 
   void begin();
   template <int D>
@@ -111,6 +113,16 @@ struct Clamp final : Physics {
                              ObjectsOf{SHOAL_TYPE_SHAPE},
                              optional,
                              example("{ball: {centre: [0.2, 0.2], radius: 0.05}}")};
+  Param<ObjectHandle> built_into{
+      "built_into",
+      nullptr,
+      "Rigid shape that the body is built into, instead of `where` and `within`: the displacement vanishes "
+      "at "
+      "its surface, curved or flat, wherever the particles lie. The body goes on behind the surface by two "
+      "spacings or more.",
+      ObjectsOf{SHOAL_TYPE_SHAPE},
+      optional,
+      example("{ball: {centre: [0.2, 0.2], radius: 0.05}}")};
   Param<std::vector<Choice>> axes{"axes",
                                   nullptr,
                                   "Directions that are held; all without it. A plane of symmetry "

@@ -16,11 +16,18 @@
 
 namespace shoal::solid {
 
-struct DeformationGradient : WeightBuilder {
-  In<Vector> position{"position"};
-  Out<Matrix> F{"deformation_gradient", derived};
+template <bool Hourglass>
+struct HourglassStress {
   Out<Vector> hourglass{"hourglass_stress", unit("N/m3"),
                         doc("Resistance to modes that alternate between particles."), derived};
+};
+template <>
+struct HourglassStress<false> {};
+
+template <bool Hourglass>
+struct DeformationGradientOf : WeightBuilder, HourglassStress<Hourglass> {
+  In<Vector> position{"position"};
+  Out<Matrix> F{"deformation_gradient", derived};
 
   void begin() {
     build_weights();
@@ -30,12 +37,16 @@ struct DeformationGradient : WeightBuilder {
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {
     const double* x = position.of_neighbours(0);
-    double *gradient = F.data(), *q = hourglass.data();
-    structure->weights.deform<D>(chunk.begin, chunk.end, x, stiffness_, gradient, q);
+    double *gradient = F.data(), *q = nullptr;
+    if constexpr (Hourglass) q = this->hourglass.data();
+    const ReferenceWeights& weights = structure->weights;
+    weights.deform<D, Hourglass>(chunk.begin, chunk.end, x, stiffness_, gradient, q);
+    weights.correct<D, Hourglass>(chunk.begin, chunk.end, stiffness_, gradient, q);
   }
 
  private:
   double stiffness_ = 0;  // N/m4
 };
+using DeformationGradient = DeformationGradientOf<true>;
 
 }  // namespace shoal::solid

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "force_consistency.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "monomials.hpp"
@@ -14,6 +15,10 @@ namespace {
 constexpr double goal = 1e-3;  // of the residual, times the spacing
 // What is left beyond is of long wave length, and the smoother the less it does.
 constexpr int most_iterations = 200;
+
+// On a lattice: neighbours of a held surface and their neighbours. What its moments keep of the residual is then left,
+// in equilibrium with itself, five spacings inside; more rings move it further in and change nothing else.
+constexpr int rings = 2;
 
 template <int D>
 using Vectors = std::vector<Vec<D>>;
@@ -43,8 +48,12 @@ class MultiplierSystem {
     fits_.resize(n_);
     for (std::uint64_t i = 0; i < n_; ++i) {
       factors_.emplace_back(moments(i));
-      fits_well_.push_back(well_conditioned<D>(factors_.back()));
+      fits_well_.push_back(!holds(i) && well_conditioned<D>(factors_.back()));
     }
+    near_held_.assign(n_, 0);
+    if (geometry.held != nullptr)
+      for (std::uint64_t i = 0; i < n_; ++i)
+        near_held_[i] = holds(i) || any_neighbour(i, [&](std::uint32_t j) { return holds(j); });
     find_constraints();
   }
 
@@ -52,18 +61,35 @@ class MultiplierSystem {
   // for two supports' depth under the surface, where the change would do no good.
   bool is_lattice() const {
     for (std::uint64_t i = 0; i < n_; ++i) {
-      if (kind_[i] != Kind::inside) continue;
+      if (kind_[i] != Kind::inside || near_held(i)) continue;
       Vec<D> sum{};
       double scale = 0;
       const Row row = row_of(list_, i);
       for (std::uint32_t m = 0; m < row.n; ++m) {
         const Vec<D> d = difference(i, row.j[m]);
-        sum += weight(row.j[m], d) * d;
-        scale += weight(row.j[m], d) * norm(d);
+        const double w = kernel_.w(norm(d) * settings_.smoothing_length);
+        sum += w * d;
+        scale += w * norm(d);
       }
       if (norm(sum) > 1e-9 * scale) return false;
     }
     return true;
+  }
+
+  // Leaves no more to constrain than what is near a held surface, and says how many particles that are.
+  std::uint64_t constrain_near_held() {
+    std::vector<std::uint8_t> reached = near_held_;
+    for (int ring = 1; ring < rings; ++ring) {
+      const std::vector<std::uint8_t> inner = reached;
+      for (std::uint64_t i = 0; i < n_; ++i)
+        if (inner[i] == 0) reached[i] = any_neighbour(i, [&](std::uint32_t j) { return inner[j] != 0; });
+    }
+    std::uint64_t count = 0;
+    for (std::uint64_t i = 0; i < n_; ++i) {
+      if (reached[i] == 0) kind_[i] = Kind::free;
+      count += kind_[i] != Kind::free;
+    }
+    return count;
   }
 
   // Removes the part of vectors that is not constrained.
@@ -83,7 +109,7 @@ class MultiplierSystem {
       for (std::uint32_t m = 0; m < row.n; ++m) {
         const std::uint64_t j = row.j[m];
         const Vec<D> d = difference(i, j);
-        const double w = volume(i) * volume(j) * kernel_.w(norm(d) * settings_.smoothing_length);
+        const double w = volume(i) * weight(j, d);
         sum += w * (residual(j, i, -d, l) - residual(i, j, d, l));
       }
       out[i] = sum;
@@ -94,12 +120,12 @@ class MultiplierSystem {
   // Adds w_ij res_ij of the multipliers to the gradients.
   void change(const Vectors<D>& l, const std::vector<std::uint64_t>& offsets, double* forward) {
     for (std::uint64_t i = 0; i < n_; ++i) {
+      if (holds(i)) continue;
       fits_[i] = fit(i, l);
       const Row row = row_of(list_, i);
       for (std::uint32_t m = 0; m < row.n; ++m) {
         const Vec<D> d = difference(i, row.j[m]);
-        const double w = volume(row.j[m]) * kernel_.w(norm(d) * settings_.smoothing_length);
-        const Vec<D> change = w * residual(i, row.j[m], d, l);
+        const Vec<D> change = weight(row.j[m], d) * residual(i, row.j[m], d, l);
         double* g = forward + (offsets[i] + m) * (D + 1);
         for (int a = 0; a < D; ++a) g[a] += change[a];
       }
@@ -115,19 +141,29 @@ class MultiplierSystem {
     for (int a = 0; a < D; ++a) n[a] = geometry_.normal[i * D + static_cast<std::uint64_t>(a)];
     return n;
   }
-  // (X_j - X_i) / h
+  // (X_j - X_i) / h, held particles in their places at the surface.
   Vec<D> difference(std::uint64_t i, std::uint64_t j) const {
     Vec<D> d;
     for (int a = 0; a < D; ++a) {
       const auto k = static_cast<std::uint64_t>(a);
-      d[a] = (geometry_.position[j * D + k] - geometry_.position[i * D + k]) / settings_.smoothing_length;
+      d[a] = geometry_.position[j * D + k] - geometry_.position[i * D + k];
+      if (holds(j)) d[a] -= geometry_.held->shift[j * D + k];
+      d[a] /= settings_.smoothing_length;
     }
     return d;
   }
   double weight(std::uint64_t j, const Vec<D>& d) const {
+    if (holds(j) && !geometry_.held->shows(j)) return 0.0;
     return volume(j) * kernel_.w(norm(d) * settings_.smoothing_length);
   }
 
+  bool near_held(std::uint64_t i) const { return near_held_[i] != 0; }
+  bool holds(std::uint64_t i) const { return geometry_.held != nullptr && geometry_.held->holds(i); }
+  template <class Condition>
+  bool any_neighbour(std::uint64_t i, const Condition& condition) const {
+    const Row row = row_of(list_, i);
+    return std::any_of(row.j, row.j + row.n, condition);
+  }
   Moments<D> moments(std::uint64_t i) const {
     Moments<D> sum = Moments<D>::Zero();
     const Row row = row_of(list_, i);
@@ -161,6 +197,10 @@ class MultiplierSystem {
     const double reach = 2.0 * settings_.smoothing_length;
     kind_.assign(n_, Kind::inside);
     for (std::uint64_t i = 0; i < n_; ++i) {
+      if (holds(i)) {
+        kind_[i] = Kind::free;
+        continue;
+      }
       if (geometry_.distance[i] < -reach) continue;
       kind_[i] = Kind::surface;
       // Near an edge no direction is tangential.
@@ -180,6 +220,7 @@ class MultiplierSystem {
   std::vector<bool> fits_well_;
   std::vector<Fit> fits_;
   std::vector<Kind> kind_;
+  std::vector<std::uint8_t> near_held_;
 };
 
 }  // namespace
@@ -202,9 +243,14 @@ ForceConsistency make_consistent(const ReferenceSettings& settings, const shoal_
       }
   }
   MultiplierSystem<D> system(settings, list, geometry);
-  if (system.is_lattice()) return {};
+  std::uint64_t n_constrained = n;
+  if (system.is_lattice()) {
+    if (geometry.held == nullptr) return {};
+    n_constrained = std::max<std::uint64_t>(1, system.constrain_near_held());
+  }
   system.constrain(r);
-  const double unit = settings.spacing / std::pow(settings.spacing, D) / std::sqrt(static_cast<double>(n));
+  const double unit =
+      settings.spacing / std::pow(settings.spacing, D) / std::sqrt(static_cast<double>(n_constrained));
   ForceConsistency report;
   double square = inner<D>(r, r);
   report.before = report.after = unit * std::sqrt(square);

@@ -139,7 +139,13 @@ struct HourglassEnergy : ParticleOperator<HourglassEnergy> {
                      doc("Energy of the hourglass control per reference volume."), derived};
   double stiffness = 0;  // N/m4
 
-  void particle(auto i) const { energy[i] = stiffness > 0.0 ? squared_norm(q[i]) / (2.0 * stiffness) : 0.0; }
+  void particle(auto i) const { energy[i] = squared_norm(q[i]) / (2.0 * stiffness); }
+};
+// Where there is no control.
+struct NoHourglassEnergy : ParticleOperator<NoHourglassEnergy> {
+  Out<Scalar> energy{"hourglass_energy", unit("J/m3"),
+                     doc("Energy of the hourglass control per reference volume."), derived};
+  void particle(auto i) const { energy[i] = 0.0; }
 };
 
 struct NonAffine : ReferenceOperator {

@@ -13,10 +13,17 @@
 
 namespace shoal::solid {
 
-struct InternalForce : ReferenceOperator {
-  In<Matrix> P{"piola_stress", unit("Pa"), doc("First Piola-Kirchhoff stress.")};
+template <bool Hourglass>
+struct HourglassResistance {
   In<Vector> hourglass{"hourglass_stress", unit("N/m3"),
                        doc("Resistance to modes that alternate between particles.")};
+};
+template <>
+struct HourglassResistance<false> {};
+
+template <bool Hourglass>
+struct InternalForceOf : ReferenceOperator, HourglassResistance<Hourglass> {
+  In<Matrix> P{"piola_stress", unit("Pa"), doc("First Piola-Kirchhoff stress.")};
   Out<Vector> acceleration{"internal_acceleration", unit("m/s2"),
                            doc("Acceleration by the body's own stress."), derived};
 
@@ -28,17 +35,13 @@ struct InternalForce : ReferenceOperator {
 
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {
-    structure->hourglass > 0.0 ? rows<D, true>(chunk) : rows<D, false>(chunk);
-  }
-
- private:
-  template <int D, bool Hourglass>
-  void rows(const shoal_chunk& chunk) const {
-    const double *stress = P.of_neighbours(0), *q = hourglass.of_neighbours(0);
+    const double *stress = P.of_neighbours(0), *q = nullptr;
+    if constexpr (Hourglass) q = this->hourglass.of_neighbours(0);
     const double per_density = 1.0 / structure->constants.density;
     double* a = acceleration.data();
     structure->weights.force<D, Hourglass>(chunk.begin, chunk.end, stress, q, per_density, a);
   }
 };
+using InternalForce = InternalForceOf<true>;
 
 }  // namespace shoal::solid

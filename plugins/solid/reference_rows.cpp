@@ -36,18 +36,23 @@ struct Surroundings {
   };
   std::vector<Neighbour> neighbours;
 
-  void look(const WendlandC2<D>& kernel, const Row& row, const double* x, const double* volume,
-            std::uint64_t i) {
+  void look(const WendlandC2<D>& kernel, const Row& row, const ReferenceGeometry& geometry, std::uint64_t i) {
     neighbours.clear();
+    const double* x = geometry.position;
+    const HeldSurface* held = geometry.held;
     for (std::uint32_t m = 0; m < row.n; ++m) {
       const std::size_t j = row.j[m];
       Vec<D> d;
       for (int a = 0; a < D; ++a)
         d[a] = x[j * D + static_cast<std::size_t>(a)] - x[i * D + static_cast<std::size_t>(a)];
+      double volume = geometry.volume[j];
+      if (held != nullptr && (held->holds(i) || held->holds(j))) {
+        if (held->holds(i) || !held->shows(j)) volume = 0.0;
+        for (int a = 0; a < D; ++a) d[a] -= held->shift[j * D + static_cast<std::size_t>(a)];
+      }
       const double r = norm(d), reach = 2.0 * kernel.h();
-      neighbours.push_back({monomials<D>(d / kernel.h()), volume[j] * kernel.w(r),
-                            -volume[j] * kernel.dw_over_r(r),
-                            volume[j] * std::max(0.0, 1.0 - r * r / (reach * reach))});
+      neighbours.push_back({monomials<D>(d / kernel.h()), volume * kernel.w(r), -volume * kernel.dw_over_r(r),
+                            volume * std::max(0.0, 1.0 - r * r / (reach * reach))});
     }
   }
 };
@@ -164,7 +169,7 @@ void ReferenceRows::fit(const ReferenceSettings& settings, const shoal_neighbour
   RowFit<D> fitted(settings);
   bool spans = false;
   for (std::uint64_t i = 0; i < size(); ++i) {
-    around.look(kernel, row_of(list, i), geometry.position, geometry.volume, i);
+    around.look(kernel, row_of(list, i), geometry, i);
     spans = fitted(around, forward_.data() + start_[i] * stride_) || spans;
   }
   if (!spans && size() > 0)

@@ -42,6 +42,33 @@ void ReferenceWeights::build(int dimensions, const ReferenceSettings& settings, 
   const ReferenceRows rows(dimensions, settings, list, geometry);
   consistency_ = rows.consistency();
   keep(rows, geometry.volume);
+  if (geometry.held != nullptr && !geometry.held->empty()) look_at_held(*geometry.held);
+}
+
+void ReferenceWeights::look_at_held(const HeldSurface& held) {
+  const auto d = static_cast<std::size_t>(dimensions_);
+  corrections_.clear();
+  for (std::uint64_t i = 0; i < n_; ++i) {
+    Correction made{i, {}, {}};
+    if (held.holds(i)) {
+      for (std::size_t a = 0; a < d; ++a) made.F[a * (d + 1)] = 1.0;
+      corrections_.push_back(made);
+      continue;
+    }
+    const Stencil s = stencil(i);
+    bool any = false;
+    for (std::uint32_t m = 0; m < s.n; ++m) {
+      const auto j = static_cast<std::uint64_t>(static_cast<std::int64_t>(i) + s.offset[m]);
+      if (!held.shows(j)) continue;
+      any = true;
+      const double* w = s.forward + m * stride_;
+      for (std::size_t a = 0; a < d; ++a) {
+        for (std::size_t b = 0; b < d; ++b) made.F[a * d + b] -= held.shift[j * d + a] * w[b];
+        made.residual[a] += held.shift[j * d + a] * w[d];
+      }
+    }
+    if (any) corrections_.push_back(made);
+  }
 }
 
 // Rows with the same bits in both directions become one pattern, and neighbours in the body's order one run.

@@ -37,6 +37,7 @@
 #include <new>
 #include <vector>
 
+#include "held_surface.hpp"
 #include "pressure_grid.hpp"
 #include "shoal/abi.h"
 #include "stencils.hpp"
@@ -71,6 +72,7 @@ struct ReferenceSettings {
 struct ReferenceGeometry {
   const double *position, *volume;
   const double *normal, *distance;  // of the body's surface: outward, negative inside
+  const HeldSurface* held = nullptr;
 };
 
 // What making forces consistent came to (force_consistency.hpp).
@@ -115,14 +117,16 @@ class ReferenceWeights {
 
   Stencil stencil(std::uint64_t i) const { return stencil_of(run_of(i)->pattern); }
   // F (row by row) and the residual times `stiffness` of particles begin ... end - 1 at positions x.
-  template <int D>
+  template <int D, bool Hourglass = true>
   void deform(std::uint64_t begin, std::uint64_t end, const double* x, double stiffness, double* F,
               double* q) const {
     const StencilArrays all = arrays();
     sweep(
         begin, end,
-        [&](const Stencil& stencil, std::uint64_t i) { deformations<D>(stencil, x, stiffness, i, F, q); },
-        [&](const Loners& loners) { deformations<D>(all, loners, x, stiffness, F, q); });
+        [&](const Stencil& stencil, std::uint64_t i) {
+          deformations<D, Hourglass>(stencil, x, stiffness, i, F, q);
+        },
+        [&](const Loners& loners) { deformations<D, Hourglass>(all, loners, x, stiffness, F, q); });
   }
   // Their force per volume, N/m3, times `factor`.
   template <int D, bool Hourglass>
@@ -133,6 +137,16 @@ class ReferenceWeights {
         begin, end,
         [&](const Stencil& stencil, std::uint64_t i) { forces<D, Hourglass>(stencil, P, q, factor, i, out); },
         [&](const Loners& loners) { forces<D, Hourglass>(all, loners, P, q, factor, out); });
+  }
+  // Adds what shifting held particles to the surface changes (held_surface.hpp), behind `deform`.
+  template <int D, bool Hourglass>
+  void correct(std::uint64_t begin, std::uint64_t end, double stiffness, double* F, double* q) const {
+    const auto by_particle = [](const Correction& a, std::uint64_t i) { return a.i < i; };
+    for (auto at = std::lower_bound(corrections_.begin(), corrections_.end(), begin, by_particle);
+         at != corrections_.end() && at->i < end; ++at) {
+      for (std::uint64_t k = 0; k < D * D; ++k) F[at->i * D * D + k] += at->F[k];
+      for (std::uint64_t k = 0; Hourglass && k < D; ++k) q[at->i * D + k] += stiffness * at->residual[k];
+    }
   }
   std::size_t n_patterns() const { return patterns_.size(); }
 
@@ -151,6 +165,10 @@ class ReferenceWeights {
  private:
   struct Run {
     std::uint32_t begin, pattern;  // ends where the next begins
+  };
+  struct Correction {
+    std::uint64_t i;
+    double F[9], residual[3];
   };
   struct Pattern {
     std::uint32_t n;
@@ -205,13 +223,15 @@ class ReferenceWeights {
   template <int D>
   void linear_force(const Stiffness& stiffness, const double* u, double* out, LinearSpace& space) const;
   void keep(const ReferenceRows& rows, const double* volume);
+  void look_at_held(const HeldSurface& held);
 
   std::uint64_t n_ = 0;
   int dimensions_ = 0;
   std::size_t stride_ = 0;
   double spacing_ = 0;
   ForceConsistency consistency_;
-  std::vector<Run> runs_;  // and one behind the last particle
+  std::vector<Correction> corrections_;  // by particle
+  std::vector<Run> runs_;                // and one behind the last particle
   std::vector<Pattern> patterns_;
   std::vector<std::int32_t> offsets_;
   std::vector<double> forward_, backward_, sums_;  // and a few behind the last: loads of four begin there too

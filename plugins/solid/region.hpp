@@ -21,6 +21,7 @@ class Region {
   std::shared_ptr<void> shape;  // made by `api`
   std::string place;            // in the case, for messages
   const shoal_shape_api* api = nullptr;
+  double margin = 0.0;  // m, around the shape
 
   // Finds out whether each particle belongs to it.
   void look(int dimensions, std::uint64_t n, const double* reference_position) {
@@ -37,7 +38,7 @@ class Region {
       for (std::size_t a = 0; a < d; ++a) points[3 * i + a] = reference_position[d * i + a];
     check_host(api->distance(shape.get(), n, points.data(), value.data()));
     for (std::uint64_t i = 0; i < n; ++i)
-      if (value[i] > 0.0) inside_[i] = 0;
+      if (value[i] > margin) inside_[i] = 0;
   }
   bool looked() const { return !inside_.empty(); }
   bool holds(std::uint64_t i) const { return inside_[i] != 0; }

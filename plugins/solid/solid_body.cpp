@@ -36,6 +36,8 @@ SharedStructure structure_of(const SolidPhysics& physics, const Builder& b, Body
     throw CaseError(physics.average_volume.place() + ": the material of body '" + b.body(body).name +
                     "' does not keep volume and shape apart, so there is no pressure to average; "
                     "solid.neo_hookean (form: split) and solid.mooney_rivlin do");
+  structure->end_correction = physics.end_correction;
+  structure->held = held_regions(b, body);
   structure->hourglass = physics.hourglass * structure->constants.shear_modulus;
   return structure;
 }
@@ -56,8 +58,12 @@ void SolidBody::attach_initial() const {
 }
 
 void SolidBody::attach_deformation() const {
-  b.attach<DeformationGradient>("solid.deformation_gradient", at_deformation, reference(),
-                                [&](auto& op) { op.structure = structure; });
+  const auto attach = [&]<class Op>() {
+    b.attach<Op>("solid.deformation_gradient", at_deformation, reference(),
+                 [&](auto& op) { op.structure = structure; });
+  };
+  controls() ? attach.operator()<DeformationGradientOf<true>>()
+             : attach.operator()<DeformationGradientOf<false>>();
 }
 
 void SolidBody::attach_stress() const {
@@ -66,10 +72,13 @@ void SolidBody::attach_stress() const {
 }
 
 void SolidBody::attach_forces() const {
-  b.attach<InternalForce>("solid.internal_force", at_forces, reference(), [&](auto& op) {
-    op.structure = structure;
-    op.counts_weights = true;
-  });
+  const auto attach = [&]<class Op>() {
+    b.attach<Op>("solid.internal_force", at_forces, reference(), [&](auto& op) {
+      op.structure = structure;
+      op.counts_weights = true;
+    });
+  };
+  controls() ? attach.operator()<InternalForceOf<true>>() : attach.operator()<InternalForceOf<false>>();
   b.own_field(body, "acceleration", at_forces);
   const Vector3 g = b.gravity();
   if (g != Vector3{})
@@ -106,12 +115,15 @@ void SolidBody::attach_averaging(At at, const AveragingFields& names, std::uint3
   attach.operator()<PressureCorrection>("solid.pressure_correction", itself());
   attach.operator()<CorrectedStress>("solid.corrected_stress", itself());
 }
+template <bool Hourglass>
 void SolidBody::attach_current_state() const {
-  on_demand<DeformationGradient>("solid.deformation_gradient.current", reference(), [&](auto& op) {
-    op.structure = structure;
-    op.F.rename("current_deformation_gradient");
-    op.hourglass.rename("current_hourglass_stress");
-  });
+  on_demand<DeformationGradientOf<Hourglass>>("solid.deformation_gradient.current", reference(),
+                                              [&](auto& op) {
+                                                op.structure = structure;
+                                                op.F.rename("current_deformation_gradient");
+                                                if constexpr (Hourglass)
+                                                  op.hourglass.rename("current_hourglass_stress");
+                                              });
   on_demand<Stress>("solid.stress.current", itself(), [&](auto& op) {
     declare_law_fields(op, false);
     op.trial = true;
@@ -119,15 +131,15 @@ void SolidBody::attach_current_state() const {
     op.P.rename("current_piola_stress");
   });
   if (averages()) attach_averaging({SHOAL_SAMPLE, "measures"}, current_averaging, SHOAL_OPERATOR_ON_DEMAND);
-  on_demand<InternalForce>("solid.internal_force.current", reference(), [&](auto& op) {
+  on_demand<InternalForceOf<Hourglass>>("solid.internal_force.current", reference(), [&](auto& op) {
     op.structure = structure;
     op.P.rename("current_piola_stress");
-    op.hourglass.rename("current_hourglass_stress");
+    if constexpr (Hourglass) op.hourglass.rename("current_hourglass_stress");
     op.acceleration.rename("current_internal_acceleration");
   });
 }
 void SolidBody::attach_measures() const {
-  attach_current_state();
+  controls() ? attach_current_state<true>() : attach_current_state<false>();
   on_demand<Displacement>("solid.displacement");
   on_demand<CauchyStress>("solid.cauchy_stress", itself(), [&](auto& op) { declare_law_fields(op, false); });
   if (averages()) on_demand<AveragedCauchyStress>("solid.averaged_cauchy_stress");
@@ -140,8 +152,11 @@ void SolidBody::attach_measures() const {
     on_demand<AveragedStrainEnergy>("solid.averaged_strain_energy", itself(),
                                     [&](auto& op) { op.structure = structure; });
   const double dx = structure->settings.spacing;
-  on_demand<HourglassEnergy>("solid.hourglass_energy", itself(),
-                             [&](auto& op) { op.stiffness = structure->hourglass / (dx * dx); });
+  if (controls())
+    on_demand<HourglassEnergy>("solid.hourglass_energy", itself(),
+                               [&](auto& op) { op.stiffness = structure->hourglass / (dx * dx); });
+  else
+    on_demand<NoHourglassEnergy>("solid.hourglass_energy");
   on_demand<NonAffine>("solid.non_affine", reference(), [&](auto& op) { op.structure = structure; });
 }
 

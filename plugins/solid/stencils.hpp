@@ -49,14 +49,15 @@ struct StencilArrays {
 inline void load(VG& v, const double* p) { std::memcpy(&v, p, sizeof v); }
 inline void store(const VG& v, double* p) { std::memcpy(p, &v, sizeof v); }
 
-// F (row by row) and residual times `stiffness` of particles i ... i + group - 1.
-template <int D>
+// F (row by row) and, where there is hourglass control, residual times `stiffness` of particles i ... i + group - 1.
+template <int D, bool Hourglass>
 void deformations(const Stencil& stencil, const double* x, double stiffness, std::uint64_t i, double* F,
                   double* q) {
-  VG own[D], sum[D + 1][D];
+  constexpr int sums = Hourglass ? D + 1 : D;
+  VG own[D], sum[sums][D];
   for (int v = 0; v < D; ++v) {
     load(own[v], x + i * D + static_cast<std::uint64_t>(group * v));
-    for (int c = 0; c <= D; ++c) sum[c][v] = VG{};
+    for (int c = 0; c < sums; ++c) sum[c][v] = VG{};
   }
   const double* w = stencil.forward;
   for (std::uint32_t m = 0; m < stencil.n; ++m, w += D + 1) {
@@ -65,7 +66,7 @@ void deformations(const Stencil& stencil, const double* x, double stiffness, std
       VG difference;
       load(difference, theirs + group * v);
       difference -= own[v];
-      for (int c = 0; c <= D; ++c) sum[c][v] += difference * w[c];
+      for (int c = 0; c < sums; ++c) sum[c][v] += difference * w[c];
     }
   }
   double* gradient = F + i * D * D;
@@ -74,7 +75,7 @@ void deformations(const Stencil& stencil, const double* x, double stiffness, std
     for (int c = 0; c < D; ++c) columns[c] = sum[c][v];
     interleave(columns, rows);
     for (int k = 0; k < D; ++k) store(rows[k], gradient + group * (v * D + k));
-    store(-stiffness * sum[D][v], q + i * D + static_cast<std::uint64_t>(group * v));
+    if constexpr (Hourglass) store(-stiffness * sum[D][v], q + i * D + static_cast<std::uint64_t>(group * v));
   }
 }
 
@@ -194,29 +195,30 @@ class Loners {
   int size_ = 0;
 };
 
-template <int D>
+template <int D, bool Hourglass>
 void deformations(const StencilArrays& arrays, const Loners& loners, const double* x, double stiffness,
                   double* F, double* q) {
+  constexpr int sums = Hourglass ? D + 1 : D;
   const IndexPack i = loners.particles();
-  Pack own[D], theirs[D], w[D + 1], sum[D][D + 1];
+  Pack own[D], theirs[D], w[D + 1], sum[D][sums];
   gather_tuple<D>(x, i, own);
   for (int r = 0; r < D; ++r)
-    for (int c = 0; c <= D; ++c) sum[r][c] = 0.0;
+    for (int c = 0; c < sums; ++c) sum[r][c] = 0.0;
   loners.for_each_neighbour<D>(arrays, [&](IndexPack j, IndexPack at) {
     gather_tuple<D>(x, j, theirs);
     gather_tuple<D + 1, 1>(arrays.forward, at, w);
     for (int r = 0; r < D; ++r) {
       const Pack difference = theirs[r] - own[r];
-      for (int c = 0; c <= D; ++c) sum[r][c] += difference * w[c];
+      for (int c = 0; c < sums; ++c) sum[r][c] += difference * w[c];
     }
   });
   Pack gradient[D * D], held[D];
   for (int r = 0; r < D; ++r) {
     for (int c = 0; c < D; ++c) gradient[r * D + c] = sum[r][c];
-    held[r] = -stiffness * sum[r][D];
+    if constexpr (Hourglass) held[r] = -stiffness * sum[r][D];
   }
   scatter_tuple<D * D>(gradient, i, F);
-  scatter_tuple<D>(held, i, q);
+  if constexpr (Hourglass) scatter_tuple<D>(held, i, q);
 }
 
 template <int D, bool Hourglass>

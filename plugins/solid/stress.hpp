@@ -48,10 +48,18 @@ struct Stress : ParticleOperator<Stress> {
 // The fields that the law keeps, of the undeformed body.
 struct InitialState : ParticleOperator<InitialState> {
   In<Vector> position{"position"};
-  In<Scalar> volume{"volume"};
+  In<Scalar> distance{"signed_distance"};
+  InOut<Scalar> volume{"volume"};
   Out<Scalar> mass{"mass"};
   DeclaredFields law_fields{*this};
   SharedStructure structure;
+
+  void begin() {
+    const HeldSurface held = structure->held_surface(dimensions(), n_particles(), position.data());
+    if (!held.empty()) cut_volumes(held, dimensions(), position.data(), volume.data());
+    if (structure->end_correction)
+      correct_ends(n_particles(), distance.data(), structure->settings.spacing, volume.data());
+  }
 
   void block(std::uint64_t begin, std::uint64_t end) const {
     std::array<double*, DeclaredFields::most> fields;

@@ -20,10 +20,18 @@ struct Structure {
   shoal_elastic_constants constants{};
   std::uint32_t kinematics = SHOAL_THREE_DIMENSIONAL;
   ReferenceSettings settings;
+  bool end_correction = false;
   double hourglass = 0;   // modulus of the hourglass control, Pa
   double wave_speed = 0;  // m/s, the largest when last looked at; 0 for laws that do not stiffen
   ReferenceWeights weights;
   PressureGrid grid;  // of nearly incompressible materials
+  HeldRegions held;   // shapes that the body is built into
+
+  HeldSurface held_surface(int dimensions, std::uint64_t n, const double* reference_position) const {
+    HeldSurface surface;
+    if (held) surface.look(*held, dimensions, n, reference_position, settings.spacing);
+    return surface;
+  }
 
   Stiffness stiffness() const {
     // The modulus of longitudinal waves is lambda + 2 mu; in plane stress that of a plate.
@@ -69,8 +77,10 @@ class WeightBuilder : public ReferenceOperator {
  protected:
   void build_weights() const {
     if (structure->weights.built()) return;
+    const HeldSurface held = structure->held_surface(dimensions(), n_particles(), reference_position.data());
     structure->weights.build(dimensions(), structure->settings, neighbours(0),
-                             {reference_position.data(), volume.data(), normal.data(), distance.data()});
+                             {reference_position.data(), volume.data(), normal.data(), distance.data(),
+                              held.empty() ? nullptr : &held});
   }
 
   In<Vector> reference_position{"reference_position", own_only};

@@ -205,6 +205,14 @@ TEST_CASE("damping, viscosity and averaged volumes of a plate are paid for where
              {"plate.pressure_correction", "plate.volume_ratio"});
 }
 
+TEST_CASE("a plate without hourglass control does not pay for it, nor does a measure of its energy") {
+  const std::string without = replaced(plate, "bodies: [plate]}", "bodies: [plate], hourglass: 0}");
+  check_cost(plate, without, {}, {"plate.hourglass_stress"});
+  const std::string probe =
+      "probes:\n  energy: {sum: {of: volume*hourglass_energy, body: plate}, every: 1}\n";
+  check_cost(without + probe, without, {"solid.hourglass_energy on plate"}, {"plate.hourglass_energy"});
+}
+
 TEST_CASE("so are the limiter, sources and surfaces of diffusion") {
   const auto asked = [](const std::string& key) {
     return replaced(heat, "bodies: [plate]", "bodies: [plate], " + key);

@@ -91,11 +91,20 @@ TEST_CASE("period: the mean time between rises through the mean") {
   CHECK(std::isnan(compare(specification, wave(30.0, 0.0), true).error));
 }
 
+TEST_CASE("amplitude: half the difference between the largest and the least value within the window") {
+  ReferenceSpecification specification = against("0,-3\n1,1\n2,99\n", ErrorMeasure::amplitude);  // 2
+  specification.to = 1.0;
+  const Series sampled{{0, 0.3, 0.6, 1, 1.5}, {5, 9.2, 4.8, std::nan(""), 100}};  // 2.2
+  CHECK(compare(specification, sampled, true).error == doctest::Approx(0.1));
+  CHECK(std::isnan(compare(specification, Series{}, true).error));
+}
+
 TEST_CASE("names of measures") {
   CHECK(error_measure("final") == ErrorMeasure::last);
   CHECK(error_measure("relative_rms") == ErrorMeasure::relative_rms);
   CHECK_FALSE(error_measure("average"));
   CHECK(name_of(ErrorMeasure::last) == "final");
+  CHECK(name_of(ErrorMeasure::amplitude) == "amplitude");
 }
 
 TEST_CASE("columns, scales and the window of a reference") {

@@ -54,6 +54,19 @@ TEST_CASE("constraints") {
         "[\"0.1*t\", 0]");
 }
 
+TEST_CASE("bodies that are built in") {
+  CHECK(
+      refusal({.physics =
+                   "solid.clamp: {bodies: [block], where: x < 0.1, built_into: {ball: {centre: [0, 0], "
+                   "radius: 0.3}}}"}) ==
+      "block.yaml:11:5: error: block.yaml:11:64: built_into holds all that is in its shape, along all axes; "
+      "leave out where, within and axes, or make another solid.clamp of them");
+  CHECK(refusal(
+            {.physics = "solid.clamp: {bodies: [block], built_into: {ball: {centre: [3, 3], radius: 1}}}"}) ==
+        "error: operator solid.clamp on body 'block' failed in begin: block.yaml:11:48: no particle of the "
+        "body lies in the region, which is of positions before deformation");
+}
+
 TEST_CASE("loads") {
   CHECK(refusal({.physics = "solid.traction: {bodies: [block], where: x > 0.5}"}) ==
         "block.yaml:11:5: error: solid.traction needs either a traction or a force, e.g. traction: [0, "
