@@ -96,7 +96,10 @@ struct FluidBody {
       if (has_walls()) b.attach<WallCrowding>("fluid.crowding.walls", at_shift, and_walls(), strength);
       b.attach<AlongSurface>("fluid.along_surface", at_shift, itself());
     } else {
-      b.attach<TransportShift>("fluid.transport_shift", at_shift, itself(), strength);
+      b.attach<TransportShift>("fluid.transport_shift", at_shift, itself(), [&](auto& op) {
+        strength(op);
+        op.geometry = geometry;
+      });
       if (has_walls())
         b.attach<WallTransportShift>("fluid.transport_shift.walls", at_shift, and_walls(), strength);
     }
@@ -110,19 +113,19 @@ struct FluidBody {
   void attach_density() const {
     if (!physics.density_summation) return;
     const Target target = itself();
-    const std::uint64_t density_interval = physics.free_surface ? 2 : 1;
+    constexpr std::uint64_t interval = 2;
     const auto setup = [&](auto& op) {
       op.reference_density = density;
       op.per_lattice_sum = 1.0 / lattice.w;
       op.free_surface = physics.free_surface;
-      op.interval = density_interval;
+      op.interval = interval;
       const double share = physics.free_surface ? physics.summation_relaxation.value() : 1.0;
-      op.relaxation = std::min(1.0, static_cast<double>(density_interval) * share);
+      op.relaxation = std::min(1.0, static_cast<double>(interval) * share);
       op.tolerance = physics.free_surface ? physics.summation_tolerance * density : 0.0;
     };
     if (has_walls()) {
       b.attach<WallDensity>("fluid.density.walls", at_density, and_walls(),
-                            [&](auto& op) { op.interval = density_interval; });
+                            [&](auto& op) { op.interval = interval; });
       b.attach<DensityReinitialisationAtWalls>("fluid.density", at_density, target, setup);
     } else {
       b.attach<DensityReinitialisation>("fluid.density", at_density, target, setup);
@@ -136,7 +139,8 @@ struct FluidBody {
   }
 
   void attach_gradients() const {
-    b.attach<GradientMoment>("fluid.gradient_moment", at_filter, itself());
+    b.attach<GradientMoment>("fluid.gradient_moment", at_filter, itself(),
+                             [&](auto& op) { op.geometry = geometry; });
     if (has_walls()) b.attach<WallGradientMoment>("fluid.gradient_moment.walls", at_filter, and_walls());
     b.attach<GradientMatrix>("fluid.gradient_matrix", at_filter, itself(),
                              [&](auto& op) { op.slope = lattice.slope; });
@@ -308,7 +312,7 @@ double expected_speed(const Wcsph& physics, const Builder& b) {
 }  // namespace
 
 void Wcsph::build(const Builder& b) {
-  b.loop("advection", {"shift", "apply_shift", "density", "geometry", "filter", "forces", "acoustic"});
+  b.loop("advection", {"density", "geometry", "shift", "apply_shift", "filter", "forces", "acoustic"});
   b.loop("acoustic", at_acoustic, {"predict", "momentum", "kick", "continuity"});
   b.renew_neighbours_in("advection");
 
@@ -333,9 +337,9 @@ void Wcsph::build(const Builder& b) {
     b.note(std::string(b.body(body).name) + ": sound speed " + number(c) + " m/s for an expected speed of " +
            number(speed) + " m/s (Mach " + number(speed / c) + ")");
     fluid.attach_initial();
-    fluid.attach_shift();
     fluid.attach_density();
     fluid.attach_geometry();
+    fluid.attach_shift();
     if (gradient_correction) fluid.attach_gradients();
     fluid.attach_filter();
     fluid.attach_forces();
