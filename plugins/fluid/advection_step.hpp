@@ -6,7 +6,6 @@
 #pragma once
 
 #include <algorithm>
-#include <memory>
 
 #include "shoal/interfaces/equation_of_state.h"
 #include "shoal/pair_operator.hpp"
@@ -53,11 +52,10 @@ struct TransportShift : PairOperator<TransportShift> {
                     derived};
 
   double strength = 0.5;
-  std::shared_ptr<FrozenGeometry> geometry;
 
-  auto pair(const auto& p) const { return p.weight(volume) * p.r_ij(); }
+  auto pair(const auto& p) const { return p.j(volume) * p.grad_W(); }
   void particle(auto i, auto sum) const {
-    shift[i] = (-strength * smoothing_length() * smoothing_length() / volume[i]) * sum;
+    shift[i] = (-strength * smoothing_length() * smoothing_length()) * sum;
   }
 };
 

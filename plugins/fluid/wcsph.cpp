@@ -96,10 +96,7 @@ struct FluidBody {
       if (has_walls()) b.attach<WallCrowding>("fluid.crowding.walls", at_shift, and_walls(), strength);
       b.attach<AlongSurface>("fluid.along_surface", at_shift, itself());
     } else {
-      b.attach<TransportShift>("fluid.transport_shift", at_shift, itself(), [&](auto& op) {
-        strength(op);
-        op.geometry = geometry;
-      });
+      b.attach<TransportShift>("fluid.transport_shift", at_shift, itself(), strength);
       if (has_walls())
         b.attach<WallTransportShift>("fluid.transport_shift.walls", at_shift, and_walls(), strength);
     }
@@ -113,7 +110,7 @@ struct FluidBody {
   void attach_density() const {
     if (!physics.density_summation) return;
     const Target target = itself();
-    constexpr std::uint64_t interval = 2;
+    const std::uint64_t interval = physics.free_surface ? 2 : 1;
     const auto setup = [&](auto& op) {
       op.reference_density = density;
       op.per_lattice_sum = 1.0 / lattice.w;
@@ -312,7 +309,7 @@ double expected_speed(const Wcsph& physics, const Builder& b) {
 }  // namespace
 
 void Wcsph::build(const Builder& b) {
-  b.loop("advection", {"density", "geometry", "shift", "apply_shift", "filter", "forces", "acoustic"});
+  b.loop("advection", {"shift", "apply_shift", "density", "geometry", "filter", "forces", "acoustic"});
   b.loop("acoustic", at_acoustic, {"predict", "momentum", "kick", "continuity"});
   b.renew_neighbours_in("advection");
 
@@ -337,9 +334,9 @@ void Wcsph::build(const Builder& b) {
     b.note(std::string(b.body(body).name) + ": sound speed " + number(c) + " m/s for an expected speed of " +
            number(speed) + " m/s (Mach " + number(speed / c) + ")");
     fluid.attach_initial();
+    fluid.attach_shift();
     fluid.attach_density();
     fluid.attach_geometry();
-    fluid.attach_shift();
     if (gradient_correction) fluid.attach_gradients();
     fluid.attach_filter();
     fluid.attach_forces();

@@ -3,9 +3,9 @@
 //
 // fluid.wcsph: weakly compressible flow with dual-criteria time stepping (Zhang, Rezavand, Hu 2020).
 //
-//   loop advection    density    re-initialised by summation
+//   loop advection    shift      particles spread evenly
+//                     density    re-initialised by summation, where the shift has put them
 //                     geometry   of pairs, frozen for the acoustic steps (2D)
-//                     shift      particles spread evenly
 //                     filter     velocities of particles that jitter about the flow
 //                     forces     gravity, viscosity, and what other plugins add to `acceleration`
 //                     acoustic

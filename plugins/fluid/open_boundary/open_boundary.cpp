@@ -33,7 +33,7 @@ std::int64_t name_of(const Zone& zone) {
 // The stages of fluid.wcsph between which those of the zones lie; whichever is built first.
 void declare_stages(const Builder& b) {
   b.loop("advection",
-         {"density", "zone_density", "geometry", "shift", "zone_shift", "apply_shift", "filter"});
+         {"shift", "zone_shift", "apply_shift", "density", "zone_density", "geometry", "filter"});
   b.loop("acoustic", {"advection", "acoustic"},
          {"predict", "zone_state", "momentum", "kick", "zone_motion", "continuity"});
 }

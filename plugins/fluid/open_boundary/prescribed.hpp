@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What takes the place of the equations of motion in the zone of an open boundary. Stages of fluid.wcsph:
-//   advection  zone_density  no re-initialisation of density, for which supports end too early   ZoneDensity
-//              zone_shift    no shift of particles                                               ZoneShift
+//   advection  zone_shift    no shift of particles                                               ZoneShift
+//              zone_density  no re-initialisation of density, for which supports end too early   ZoneDensity
 //   acoustic   zone_state    pressure and density, just before the force of pressure
 //              zone_motion   velocity and place, just after Kick
 // Extrapolation from the fluid's particles j to a particle i of the zone:
