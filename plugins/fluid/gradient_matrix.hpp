@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <type_traits>
 
 #include "shoal/pair_operator.hpp"
@@ -35,10 +34,8 @@ struct GradientMoment : PairOperator<GradientMoment> {
   In<Scalar> volume{"volume"};
   Out<Matrix> matrix{"gradient_matrix", unit("1"), doc("Correction of gradients.")};
 
-  std::shared_ptr<FrozenGeometry> geometry;
-
-  auto pair(const auto& p) const { return outer(p.weight(volume) * p.r_ij(), p.r_ij()); }
-  void particle(auto i, auto sum) const { matrix[i] = (-1.0 / volume[i]) * sum; }
+  auto pair(const auto& p) const { return outer((p.j(volume) * p.dW_over_r()) * p.r_ij(), p.r_ij()); }
+  void particle(auto i, auto sum) const { matrix[i] = -1.0 * sum; }
 };
 
 // The walls' share; runs after GradientMoment.

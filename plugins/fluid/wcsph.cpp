@@ -71,9 +71,11 @@ struct FluidBody {
   EquationOfState equation_of_state;
   double density, viscosity, sound_speed, max_speed;
   LatticeSums lattice = lattice_sums(b.dimensions(), b.target(body));
-  // Of the acoustic steps in an advection step; in 3D each pass finds it anew (pair_operator.hpp).
+  // Of the acoustic steps in an advection step. In 3D each pass finds it anew (pair_operator.hpp), and with corrected
+  // gradients, for the sake of accuracy: with edac and L/50 the energy of Taylor-Green vortices is 0.8 % off with frozen
+  // geometry, 0.2 % without.
   std::shared_ptr<FrozenGeometry> geometry =
-      b.dimensions() == 2 ? std::make_shared<FrozenGeometry>() : nullptr;
+      b.dimensions() == 2 && !physics.gradient_correction ? std::make_shared<FrozenGeometry>() : nullptr;
 
   bool has_walls() const { return !walls.empty(); }
   Target itself() const { return b.target(body); }
@@ -136,8 +138,7 @@ struct FluidBody {
   }
 
   void attach_gradients() const {
-    b.attach<GradientMoment>("fluid.gradient_moment", at_filter, itself(),
-                             [&](auto& op) { op.geometry = geometry; });
+    b.attach<GradientMoment>("fluid.gradient_moment", at_filter, itself());
     if (has_walls()) b.attach<WallGradientMoment>("fluid.gradient_moment.walls", at_filter, and_walls());
     b.attach<GradientMatrix>("fluid.gradient_matrix", at_filter, itself(),
                              [&](auto& op) { op.slope = lattice.slope; });

@@ -5,7 +5,7 @@
 //
 //   loop advection    shift      particles spread evenly
 //                     density    re-initialised by summation, where the shift has put them
-//                     geometry   of pairs, frozen for the acoustic steps (2D)
+//                     geometry   of pairs, frozen for the acoustic steps (2D, without corrected gradients)
 //                     filter     velocities of particles that jitter about the flow
 //                     forces     gravity, viscosity, and what other plugins add to `acceleration`
 //                     acoustic
@@ -65,7 +65,8 @@ struct Wcsph final : Physics {
                                 optional,
                                 example("0.4")};
   Param<bool> gradient_correction{"gradient_correction", nullptr,
-                                  "Whether pressure and divergence use corrected gradients.",
+                                  "Whether pressure and divergence use corrected gradients. In 2D the "
+                                  "geometry of pairs is then found anew in each acoustic step.",
                                   default_to(false)};
   Param<Choice> stabilisation{
       "stabilisation", nullptr,

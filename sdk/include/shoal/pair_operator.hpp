@@ -31,8 +31,8 @@
 // takes distances from another field than `position`.
 //     std::shared_ptr<FrozenGeometry> geometry;
 // for operators of sub-steps, whose `pair` asks p.weight(volume), p.r_ij() and p.r(), but not W() and its like: in 2D they
-// read geometry that was frozen for the step (freeze_geometry.hpp), in some 60 % of the time. In 3D they find it anew: it
-// would take 1.4 kB a particle, and gains nothing once that leaves the caches.
+// read geometry that was frozen for the step (freeze_geometry.hpp), in some 60 % of the time. Without one they find it
+// anew, and so they do in 3D, where it would take 1.4 kB a particle and gains nothing once that leaves the caches.
 //
 // Where pairs seldom change (static bodies, the reference configuration) what depends on them alone is worth keeping:
 //     auto store(const auto& p) const { return p.j(volume) * p.grad_W(); }
@@ -131,19 +131,14 @@ class PairOperator : public OperatorBase {
   // Packs of neighbours; what a run uses.
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {
-    if constexpr (D == 2 && reads_frozen()) {
-      if (self().geometry)
-        frozen_columns<D>(*self().geometry, chunk);
+    if constexpr (D == 2 && reads_frozen())
+      if (self().geometry) return frozen_columns<D>(*self().geometry, chunk);
+    with_own_kernel<D>([&](const auto& kernel) {
+      if constexpr (side_by_side<D>())
+        columns<D>(kernel, chunk);
       else
-        run_chunk_scalar<D>(chunk);
-    } else {
-      with_own_kernel<D>([&](const auto& kernel) {
-        if constexpr (side_by_side<D>())
-          columns<D>(kernel, chunk);
-        else
-          rows<D, Pack>(kernel, chunk);
-      });
-    }
+        rows<D, Pack>(kernel, chunk);
+    });
   }
   // One neighbour after the other: the reference for tests.
   template <int D>
