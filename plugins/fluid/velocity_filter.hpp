@@ -8,8 +8,8 @@
 //   dv_i = C h (rho0/rho_i) sum_j V_j [(v'_i - v'_j).e_ij] e_ij W'_ij
 // Linear flow, rotation among it, passes untouched, at free surfaces and walls too; a smooth flow changes by
 // C h^4 d^4 v / dx^4 only. Momentum and angular momentum are kept to rounding: what pairs exchange is opposite and
-// central. The fastest mode shrinks by 1 - 2.33 C in 2D and 1 - 2 C in 3D each time: stable for C < 0.85. With C = 0.4 hardly
-// any of it is left, and twice the passes with C = 0.3 change no result (standing_wave, dam_break_2d, hydrostatic_2d).
+// central. The fastest mode shrinks by 1 - 2.33 C in 2D and 1 - 2 C in 3D each time: stable for C < 0.85. With C = 0.4
+// 0.07 and 0.2 of it are left; errors are those of twice the passes with C = 0.3 (standing_wave, dam_break_2d, hydrostatic_2d).
 #pragma once
 
 #include "intermittent.hpp"

@@ -5,7 +5,8 @@
 //   dv_i/dt = (2 eta / m_i) sum_j V_i V_j (v_i - v_j) W' / r
 // (the papers have r + 0.01 h, against coincident particles: it takes 0.7 % of the viscosity off, whatever the spacing, and
 // W'/r is finite), evaluated once in an advection step. On a lattice stable for dt <= 0.3 h^2 / nu of that step (with
-// h = 1.3 dx the fastest mode decays at the rate 6.5 nu / h^2 in 2D, 6.8 in 3D: the sum over the lattice); 0.2 is used, and 0.125 next to no-slip walls, which count up to
+// h = 1.3 dx the fastest mode decays at the rate 6.5 nu / h^2 in 2D, 6.8 in 3D: the sum over the lattice); 0.2 is used, and
+// 0.125 next to no-slip walls, which count up to
 // four times, and for forces along the line of two particles, which damp longitudinal modes three times as fast.
 //
 // A no-slip wall's particle carries the velocity that continues the fluid's linearly through the wall's surface,
