@@ -4,6 +4,7 @@
 // Lattice points of a shape, row by row.
 #include "generator.hpp"
 
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -136,7 +137,7 @@ class RowFiller {
     Point p{};
     p[1] = at(1, j) + steps_.shift_y(k) * steps_.step[1];
     if (steps_.dimension == 3) p[2] = at(2, k);
-    const auto x = [&](std::int64_t i) { return start + (static_cast<double>(i) + 0.5) * steps_.step[0]; };
+    const auto x = [&](std::int64_t i) { return centre(start, i, steps_.step[0]); };
     for (std::int64_t i = range.first; i <= range.last;) {
       p[0] = x(i);
       const double distance = shape_.signed_distance(p);
@@ -158,7 +159,13 @@ class RowFiller {
 
  private:
   [[nodiscard]] double at(std::size_t axis, std::int64_t index) const {
-    return options_.origin[axis] + (static_cast<double>(index) + 0.5) * steps_.step[axis];
+    return centre(options_.origin[axis], index, steps_.step[axis]);
+  }
+
+  // Rounded once: left to the compiler, some of the places that use it may fuse product and sum and others not, and a
+  // point's last bit would tell in which it was found.
+  [[nodiscard]] static double centre(double start, std::int64_t index, double step) {
+    return std::fma(static_cast<double>(index) + 0.5, step, start);
   }
 
   /// How many points beyond this one surely lie on the same side of the surface; -1 where not even this one.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Lattice filling: exact counts at awkward spacings, against a point-by-point search, and refusals.
+#include <cmath>
 #include <numbers>
 #include <set>
 #include <stdexcept>
@@ -28,8 +29,8 @@ std::vector<Point> search(const Shape& shape, double s, int dimension, const Poi
   for (int k = -deep; k <= deep; ++k) {
     for (int j = -reach; j <= reach; ++j) {
       for (int i = -reach; i <= reach; ++i) {
-        Point p{origin[0] + (i + 0.5) * s, origin[1] + (j + 0.5) * s, 0};
-        if (dimension == 3) p[2] = origin[2] + (k + 0.5) * s;
+        Point p{std::fma(i + 0.5, s, origin[0]), std::fma(j + 0.5, s, origin[1]), 0};
+        if (dimension == 3) p[2] = std::fma(k + 0.5, s, origin[2]);
         if (shape.contains(p, 1e-6 * s)) found.push_back(p);
       }
     }
