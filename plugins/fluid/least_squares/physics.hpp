@@ -48,9 +48,12 @@ struct LeastSquares final : Physics {
       positive,
       default_to(0.6),
       scales_time_step};
-  Param<double> viscous_number{"viscous_number", "1",
-                               "Largest advection step over h^2 / nu, for accuracy: it is stable beyond.",
-                               positive, default_to(1.0)};
+  Param<double> viscous_number{"viscous_number",
+                               "1",
+                               "Largest advection step over h^2 / nu. Vortices that decay fail with 1.5.",
+                               positive,
+                               default_to(1.0),
+                               scales_time_step};
   Param<double> damping{
       "damping", "1",
       "Bulk viscosity over c dx, which damps waves of the pressure. Too little and they grow "
