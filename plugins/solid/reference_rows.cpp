@@ -25,6 +25,9 @@ constexpr std::size_t most_candidates = 64;
 constexpr double asymmetry_of_corners = 0.53;
 constexpr double more_at_corners = 100.0;  // of eps
 
+// Radius within which the residual of an even neighbourhood looks, over the spacing: two spacings along an axis.
+constexpr double near = 2.1;
+
 // The neighbours of a particle as the fit sees them.
 template <int D>
 struct Surroundings {
@@ -32,11 +35,13 @@ struct Surroundings {
     Monomials<D> p;  // of (X_j - X_i) / h
     double w;        // V_j W_ij
     double slope;    // -V_j W'_ij / r
-    double even;     // V_j (1 - r^2 / (2 h)^2), of the hourglass residual
+    double even;     // v_ij, of the hourglass residual
+    double volume;
   };
   std::vector<Neighbour> neighbours;
 
-  void look(const WendlandC2<D>& kernel, const Row& row, const ReferenceGeometry& geometry, std::uint64_t i) {
+  void look(const WendlandC2<D>& kernel, double spacing, const Row& row, const ReferenceGeometry& geometry,
+            std::uint64_t i) {
     neighbours.clear();
     const double* x = geometry.position;
     const HeldSurface* held = geometry.held;
@@ -52,8 +57,20 @@ struct Surroundings {
       }
       const double r = norm(d), reach = 2.0 * kernel.h();
       neighbours.push_back({monomials<D>(d / kernel.h()), volume * kernel.w(r), -volume * kernel.dw_over_r(r),
-                            volume * std::max(0.0, 1.0 - r * r / (reach * reach))});
+                            volume * std::max(0.0, 1.0 - r * r / (reach * reach)), volume});
     }
+    if (near * spacing > 2.0 * kernel.h() || !stand_evenly()) return;
+    for (Neighbour& j : neighbours)
+      j.even = j.p.template head<D>().norm() * kernel.h() < near * spacing ? j.volume : 0.0;
+  }
+
+ private:
+  // As on a lattice, away from surfaces.
+  bool stand_evenly() const {
+    Eigen::Matrix<double, D, 1> first = Eigen::Matrix<double, D, 1>::Zero();
+    double sum = 0;
+    for (const Neighbour& j : neighbours) first += j.w * j.p.template head<D>(), sum += j.w;
+    return first.norm() <= 1e-9 * sum;
   }
 };
 
@@ -70,7 +87,7 @@ class RowFit {
     sum_moments(around);
     const bool fits = solve_gradient(), controls = solve_residual();
     const bool linear_fits = (!fits || !settings_.quadratic) && solve_linear();
-    for (const auto& [p, w, slope, even] : around.neighbours) {
+    for (const auto& [p, w, slope, even, volume] : around.neighbours) {
       Vec<D> g{};
       if (fits && settings_.quadratic)
         for (int a = 0; a < D; ++a) g[a] = w / h_ * gradient_rows_.row(a).dot(p);
@@ -88,7 +105,7 @@ class RowFit {
     first_.setZero(), even_first_.setZero();
     linear_.setZero();
     sum_ = sum_even_ = 0;
-    for (const auto& [p, w, slope, even] : around.neighbours) {
+    for (const auto& [p, w, slope, even, volume] : around.neighbours) {
       const Moments<D> square = p * p.transpose();
       moments_ += w * square;
       first_ += w * p;
@@ -169,7 +186,7 @@ void ReferenceRows::fit(const ReferenceSettings& settings, const shoal_neighbour
   RowFit<D> fitted(settings);
   bool spans = false;
   for (std::uint64_t i = 0; i < size(); ++i) {
-    around.look(kernel, row_of(list, i), geometry, i);
+    around.look(kernel, settings.spacing, row_of(list, i), geometry, i);
     spans = fitted(around, forward_.data() + start_[i] * stride_) || spans;
   }
   if (!spans && size() > 0)

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <unordered_map>
 
 #include "reference_rows.hpp"
@@ -71,33 +72,59 @@ void ReferenceWeights::look_at_held(const HeldSurface& held) {
   }
 }
 
+// A row in both directions, neighbours with hourglass weights in front.
+class ReferenceWeights::SortedRow {
+ public:
+  std::uint32_t n = 0, controlled = 0;
+  std::vector<std::int32_t> offset;
+  std::vector<double> forward, backward;
+
+  void look(const ReferenceRows& rows, const double* volume, std::uint64_t i, std::size_t stride) {
+    n = rows.count(i);
+    rows.backward(i, volume, back_);
+    const double* there = rows.forward(i);
+    order_.resize(n);
+    std::iota(order_.begin(), order_.end(), 0u);
+    const auto behind_them = std::stable_partition(order_.begin(), order_.end(), [&](std::uint32_t m) {
+      return there[(m + 1) * stride - 1] != 0.0 || back_[(m + 1) * stride - 1] != 0.0;
+    });
+    controlled = static_cast<std::uint32_t>(behind_them - order_.begin());
+    offset.clear(), forward.clear(), backward.clear();
+    for (const std::uint32_t m : order_) {
+      offset.push_back(static_cast<std::int32_t>(static_cast<std::int64_t>(rows.neighbours(i)[m]) -
+                                                 static_cast<std::int64_t>(i)));
+      forward.insert(forward.end(), there + m * stride, there + (m + 1) * stride);
+      const auto from = back_.begin() + static_cast<std::ptrdiff_t>(m * stride);
+      backward.insert(backward.end(), from, from + static_cast<std::ptrdiff_t>(stride));
+    }
+  }
+
+ private:
+  std::vector<std::uint32_t> order_;
+  std::vector<double> back_;
+};
+
 // Rows with the same bits in both directions become one pattern, and neighbours in the body's order one run.
 void ReferenceWeights::keep(const ReferenceRows& rows, const double* volume) {
   runs_.clear(), patterns_.clear(), offsets_.clear(), forward_.clear(), backward_.clear(), sums_.clear();
   std::unordered_multimap<std::uint64_t, std::uint32_t> known;
-  std::vector<std::int32_t> offset;
-  std::vector<double> back, sum(stride_);
+  SortedRow row;
+  std::vector<double> sum(stride_);
   for (std::uint64_t i = 0; i < n_; ++i) {
-    const std::uint32_t n = rows.count(i);
-    const std::size_t numbers = n * stride_;
-    const double* there = rows.forward(i);
-    offset.resize(n);
-    for (std::uint32_t m = 0; m < n; ++m)
-      offset[m] = static_cast<std::int32_t>(static_cast<std::int64_t>(rows.neighbours(i)[m]) -
-                                            static_cast<std::int64_t>(i));
-    rows.backward(i, volume, back);
+    row.look(rows, volume, i, stride_);
     const auto is = [&](std::uint32_t pattern) {
       const Pattern& other = patterns_[pattern];
-      return other.n == n &&
-             std::equal(offset.begin(), offset.end(),
+      return other.n == row.n &&
+             std::equal(row.offset.begin(), row.offset.end(),
                         offsets_.begin() + static_cast<std::ptrdiff_t>(other.first)) &&
-             std::equal(there, there + numbers, forward_.data() + other.first * stride_) &&
-             std::equal(back.begin(), back.end(), backward_.data() + other.first * stride_);
+             std::equal(row.forward.begin(), row.forward.end(), forward_.data() + other.first * stride_) &&
+             std::equal(row.backward.begin(), row.backward.end(), backward_.data() + other.first * stride_);
     };
     if (i > 0 && is(runs_.back().pattern)) continue;
-    std::uint64_t hash = hash_of(1469598103934665603u, offset.data(), n * sizeof offset[0]);
-    hash = hash_of(hash, there, numbers * sizeof(double));
-    hash = hash_of(hash, back.data(), numbers * sizeof(double));
+    const std::size_t numbers = row.forward.size();
+    std::uint64_t hash = hash_of(1469598103934665603u, row.offset.data(), row.n * sizeof(std::int32_t));
+    hash = hash_of(hash, row.forward.data(), numbers * sizeof(double));
+    hash = hash_of(hash, row.backward.data(), numbers * sizeof(double));
     const auto [first, last] = known.equal_range(hash);
     const auto found = std::find_if(first, last, [&](const auto& entry) { return is(entry.second); });
     if (found != last) {
@@ -105,12 +132,12 @@ void ReferenceWeights::keep(const ReferenceRows& rows, const double* volume) {
       continue;
     }
     const auto pattern = static_cast<std::uint32_t>(patterns_.size());
-    patterns_.push_back({n, offsets_.size()});
-    offsets_.insert(offsets_.end(), offset.begin(), offset.end());
-    forward_.insert(forward_.end(), there, there + numbers);
-    backward_.insert(backward_.end(), back.begin(), back.end());
+    patterns_.push_back({row.n, row.controlled, offsets_.size()});
+    offsets_.insert(offsets_.end(), row.offset.begin(), row.offset.end());
+    forward_.insert(forward_.end(), row.forward.begin(), row.forward.end());
+    backward_.insert(backward_.end(), row.backward.begin(), row.backward.end());
     sum.assign(stride_, 0.0);
-    for (std::size_t k = 0; k < numbers; ++k) sum[k % stride_] += there[k];
+    for (std::size_t k = 0; k < numbers; ++k) sum[k % stride_] += row.forward[k];
     sums_.insert(sums_.end(), sum.begin(), sum.end());
     known.emplace(hash, pattern);
     runs_.push_back({static_cast<std::uint32_t>(i), pattern});

@@ -9,7 +9,7 @@
 // (X_j - X_i) / h, and c minimises sum_j w_ij (f_j - f_i - c . p_ij)^2, w_ij = V_j W_ij. With the moments
 // M = sum_j w p p^T, m = sum_j w p, s = sum_j w:
 //   G_ij   = w_ij / h (rows of the gradient of M^-1) p_ij,
-//   psi_ij = v_ij (1 - p_ij . M_v^-1 m_v) / s_v,      v_ij = V_j (1 - r^2 / (2 h)^2),
+//   psi_ij = v_ij (1 - p_ij . M_v^-1 m_v) / s_v,      v_ij = V_j (1 - r^2 / (2 h)^2) or V_j,
 // M_v, m_v, s_v being the moments with v in place of w.
 // The residual is what of f the same fit with a free value at i does not explain, so it vanishes for quadratic
 // fields (bending is not stiffened) and not for modes that alternate from particle to particle, which no gradient
@@ -17,6 +17,9 @@
 // that fall off slowly: a quadratic passes through any three layers, and w leaves little more than three (of two spacings
 // it is half a per cent of that of one), so that with it the residual of what alternates from layer to layer was 0.03 of
 // its amplitude in 3D, against 0.45 where it alternates along all axes; with v they are 0.22 and 0.22 (in 2D 0.44, 0.48).
+// Where neighbours stand evenly, as on a lattice away from surfaces, v is V_j within 2.1 spacings and zero beyond: that
+// sees as much (0.20 and 0.22; in 2D 0.44, 0.44) of 32 neighbours as the other of 56 (12 of 20 in 2D), so that the
+// control costs less. At edges and corners those few would not do.
 //
 // eps (M_XX + M_YY) is added to the diagonal of the quadratic terms: linear fields stay exact, and the weights of
 // disordered particles at surfaces lose their peaks, which would cost time step. At corners, where a body has no
@@ -171,7 +174,7 @@ class ReferenceWeights {
     double F[9], residual[3];
   };
   struct Pattern {
-    std::uint32_t n;
+    std::uint32_t n, controlled;
     std::uint64_t first;  // pair
   };
   const Run* run_of(std::uint64_t i) const {
@@ -182,6 +185,7 @@ class ReferenceWeights {
   Stencil stencil_of(std::uint32_t pattern) const {
     const Pattern& known = patterns_[pattern];
     return {known.n,
+            known.controlled,
             pattern,
             known.first,
             offsets_.data() + known.first,
@@ -222,6 +226,7 @@ class ReferenceWeights {
   }
   template <int D>
   void linear_force(const Stiffness& stiffness, const double* u, double* out, LinearSpace& space) const;
+  class SortedRow;
   void keep(const ReferenceRows& rows, const double* volume);
   void look_at_held(const HeldSurface& held);
 

@@ -28,9 +28,10 @@
 
 namespace shoal::solid {
 
-// D + 1 numbers a neighbour: G, then psi; of i, and of the neighbours towards i times V_j / V_i.
+// D + 1 numbers a neighbour: G, then psi; of i, and of the neighbours towards i times V_j / V_i. Behind the first
+// `controlled` neighbours psi is zero in both directions.
 struct Stencil {
-  std::uint32_t n, pattern;
+  std::uint32_t n, controlled, pattern;
   std::uint64_t first;         // pair, in the arrays of all stencils
   const std::int32_t* offset;  // j - i
   const double *forward, *backward;
@@ -59,16 +60,21 @@ void deformations(const Stencil& stencil, const double* x, double stiffness, std
     load(own[v], x + i * D + static_cast<std::uint64_t>(group * v));
     for (int c = 0; c < sums; ++c) sum[c][v] = VG{};
   }
-  const double* w = stencil.forward;
-  for (std::uint32_t m = 0; m < stencil.n; ++m, w += D + 1) {
-    const double* theirs = x + (static_cast<std::ptrdiff_t>(i) + stencil.offset[m]) * D;
-    for (int v = 0; v < D; ++v) {
-      VG difference;
-      load(difference, theirs + group * v);
-      difference -= own[v];
-      for (int c = 0; c < sums; ++c) sum[c][v] += difference * w[c];
+  const auto add = [&]<int terms>(std::uint32_t begin, std::uint32_t end) {
+    const double* w = stencil.forward + begin * (D + 1);
+    for (std::uint32_t m = begin; m < end; ++m, w += D + 1) {
+      const double* theirs = x + (static_cast<std::ptrdiff_t>(i) + stencil.offset[m]) * D;
+      for (int v = 0; v < D; ++v) {
+        VG difference;
+        load(difference, theirs + group * v);
+        difference -= own[v];
+        for (int c = 0; c < terms; ++c) sum[c][v] += difference * w[c];
+      }
     }
-  }
+  };
+  const std::uint32_t controlled = Hourglass ? stencil.controlled : 0;
+  add.template operator()<sums>(0, controlled);
+  add.template operator()<D>(controlled, stencil.n);
   double* gradient = F + i * D * D;
   for (int v = 0; v < D; ++v) {
     VG columns[D], rows[D];
@@ -117,15 +123,20 @@ void forces(const Stencil& stencil, const double* P, const double* q, double fac
   if constexpr (Hourglass)
     for (int v = 0; v < D; ++v)
       load(value, q + i * D + static_cast<std::uint64_t>(group * v)), held[v] = value * stencil.sums[D];
-  const double* w = stencil.backward;
-  for (std::uint32_t m = 0; m < stencil.n; ++m, w += D + 1) {
-    const std::ptrdiff_t j = static_cast<std::ptrdiff_t>(i) + stencil.offset[m];
-    repeat<D>(w, pattern);
-    for (int v = 0; v < D * D; ++v)
-      load(value, P + j * D * D + group * v), sum[v] -= value * pattern[v % patterns];
-    if constexpr (Hourglass)
-      for (int v = 0; v < D; ++v) load(value, q + j * D + group * v), held[v] -= value * w[D];
-  }
+  const auto add = [&]<bool Controlled>(std::uint32_t begin, std::uint32_t end) {
+    const double* w = stencil.backward + begin * (D + 1);
+    for (std::uint32_t m = begin; m < end; ++m, w += D + 1) {
+      const std::ptrdiff_t j = static_cast<std::ptrdiff_t>(i) + stencil.offset[m];
+      repeat<D>(w, pattern);
+      for (int v = 0; v < D * D; ++v)
+        load(value, P + j * D * D + group * v), sum[v] -= value * pattern[v % patterns];
+      if constexpr (Controlled)
+        for (int v = 0; v < D; ++v) load(value, q + j * D + group * v), held[v] -= value * w[D];
+    }
+  };
+  const std::uint32_t controlled = Hourglass ? stencil.controlled : 0;
+  if constexpr (Hourglass) add.template operator()<true>(0, controlled);
+  add.template operator()<false>(controlled, stencil.n);
   for (int v = 0; v < D; ++v) {
     VG f;
     if constexpr (D == 2)

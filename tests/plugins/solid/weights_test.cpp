@@ -47,6 +47,28 @@ std::vector<long double> solve(std::vector<std::vector<long double>> m, std::vec
   return b;
 }
 
+// How far neighbours are on one side of particle i: 0 on a lattice, away from surfaces.
+template <int D>
+double asymmetry_of(testing::Body& body, std::size_t i) {
+  const double h = solid_test::settings().smoothing_length;
+  const WendlandC2<D> kernel(h);
+  const auto& x = body["reference_position"];
+  double around = 0, aside[D] = {}, shift = 0;
+  for (std::size_t j = 0; j < body.size(); ++j) {
+    if (i == j) continue;
+    double square = 0;
+    const auto away = [&](int a) {
+      return (x[j * D + static_cast<std::size_t>(a)] - x[i * D + static_cast<std::size_t>(a)]) / h;
+    };
+    for (int a = 0; a < D; ++a) square += away(a) * away(a);
+    const double w = body["volume"][j] * kernel.w(std::sqrt(square) * h);
+    around += w;
+    for (int a = 0; a < D; ++a) aside[a] += w * away(a);
+  }
+  for (const double component : aside) shift += component * component;
+  return std::sqrt(shift) / around;
+}
+
 // Coefficients of the least-squares fit of values f around particle i: 1 (if it is free there), X, Y, ..., by the text
 // book. Lengths are in smoothing lengths.
 template <int D>
@@ -55,6 +77,7 @@ std::vector<long double> fit(testing::Body& body, const std::vector<double>& f, 
   const double h = solid_test::settings().smoothing_length;
   const WendlandC2<D> kernel(h);
   const auto& x = body["reference_position"];
+  const double asymmetry = asymmetry_of<D>(body, i);
   const std::size_t n = D + D * (D + 1) / 2 + (free_value ? 1 : 0);
   std::vector<std::vector<long double>> m(n, std::vector<long double>(n, 0));
   std::vector<long double> b(n, 0);
@@ -70,29 +93,18 @@ std::vector<long double> fit(testing::Body& body, const std::vector<double>& f, 
     for (int a = 0; a < D; ++a) p.push_back(d[a]);
     for (int a = 0; a < D; ++a)
       for (int c = a; c < D; ++c) p.push_back(d[a] * d[c]);
-    // The residual's weight falls off as a parabola, so that it looks beyond the nearest layers.
-    const double w = body["volume"][j] *
-                     (free_value ? std::max(0.0, 1.0 - square / 4.0) : kernel.w(std::sqrt(square) * h));
+    // The residual's weight falls off as a parabola, so that it looks beyond the nearest layers, and is even within 2.1
+    // spacings where neighbours are.
+    const double slow = asymmetry > 1e-9                   ? std::max(0.0, 1.0 - square / 4.0)
+                        : std::sqrt(square) * h < 2.1 * dx ? 1.0
+                                                           : 0.0;
+    const double w = body["volume"][j] * (free_value ? slow : kernel.w(std::sqrt(square) * h));
     for (std::size_t r = 0; r < n; ++r) {
       b[r] += w * p[r] * (f[j] - f[i]);
       for (std::size_t c = 0; c < n; ++c) m[r][c] += w * p[r] * p[c];
     }
   }
-  // Corners are known by where their neighbours are.
-  double around = 0, aside[D] = {}, shift = 0;
-  for (std::size_t j = 0; j < body.size(); ++j) {
-    if (i == j) continue;
-    double square = 0;
-    const auto away = [&](int a) {
-      return (x[j * D + static_cast<std::size_t>(a)] - x[i * D + static_cast<std::size_t>(a)]) / h;
-    };
-    for (int a = 0; a < D; ++a) square += away(a) * away(a);
-    const double w = body["volume"][j] * kernel.w(std::sqrt(square) * h);
-    around += w;
-    for (int a = 0; a < D; ++a) aside[a] += w * away(a);
-  }
-  for (const double component : aside) shift += component * component;
-  if (!free_value && std::sqrt(shift) > 0.53 * around) eps *= 100.0;
+  if (!free_value && asymmetry > 0.53) eps *= 100.0;
   const std::size_t first = free_value ? 1 : 0;
   long double linear = 0;
   for (std::size_t k = first; k < first + D; ++k) linear += m[k][k];
@@ -172,7 +184,28 @@ Mat<D> some_matrix() {
 TEST_CASE("weights are those of a least-squares fit") {
   compare_with_fit<2>(0.0);
   compare_with_fit<2>(0.2);
+  compare_with_fit<3>(0.0);
   compare_with_fit<3>(0.2);
+}
+
+TEST_CASE("the residual of a lattice looks at no more than the next two layers") {
+  const auto counts = []<int D>(std::uint32_t controlled, std::uint32_t all) {
+    testing::Body body = solid_test::box(D, 11, 0.0);
+    const solid_test::Neighbours neighbours(body);
+    const ReferenceWeights weights = weights_of(body, neighbours, solid_test::settings());
+    const Stencil stencil = weights.stencil(body.size() / 2);
+    CHECK(stencil.controlled == controlled);
+    CHECK(stencil.n == all);
+    for (std::uint64_t i = 0; i < body.size(); ++i) {
+      const Stencil one = weights.stencil(i);
+      for (std::uint32_t m = one.controlled; m < one.n; ++m) {
+        CHECK(one.forward[m * (D + 1) + D] == 0.0);
+        CHECK(one.backward[m * (D + 1) + D] == 0.0);
+      }
+    }
+  };
+  counts.operator()<2>(12, 20);
+  counts.operator()<3>(32, 56);
 }
 
 TEST_CASE("the residual sees what alternates in any direction") {
