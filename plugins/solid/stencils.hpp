@@ -156,53 +156,61 @@ class Loners {
   bool empty() const { return size_ == 0; }
   void add(std::uint64_t i, const Stencil& stencil) {
     lane_[size_++] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(stencil.first), stencil.n,
-                      stencil.pattern};
+                      stencil.controlled, stencil.pattern};
   }
   // Lanes that are left over repeat the last particle, which changes nothing.
   void close() {
-    least_ = UINT32_MAX, most_ = 0;
+    least_ = UINT32_MAX, most_ = controlled_ = 0;
     for (int k = 0; k < lanes; ++k) {
       if (k >= size_) lane_[k] = lane_[k - 1];
       i_[k] = lane_[k].i, pattern_[k] = lane_[k].pattern;
       least_ = std::min(least_, lane_[k].n), most_ = std::max(most_, lane_[k].n);
+      controlled_ = std::max(controlled_, lane_[k].controlled);
     }
     size_ = 0;
   }
   IndexPack particles() const { return IndexPack::load(i_); }
   IndexPack patterns() const { return IndexPack::load(pattern_); }
 
-  // function(neighbours, where their weights begin); lanes that have no more neighbours get their own particle and
-  // weights of zero.
-  template <int D, class Function>
+  // function<whether any has a weight of the hourglass residual>(neighbours, where their weights begin); lanes that have
+  // no more neighbours get their own particle and weights of zero.
+  template <int D, bool Hourglass, class Function>
   void for_each_neighbour(const StencilArrays& arrays, const Function& function) const {
+    const std::uint32_t controlled = Hourglass ? controlled_ : 0;
+    for_neighbours<D, Hourglass>(0, controlled, arrays, function);
+    for_neighbours<D, false>(controlled, most_, arrays, function);
+  }
+
+ private:
+  template <int D, bool Controlled, class Function>
+  void for_neighbours(std::uint32_t m, std::uint32_t end, const StencilArrays& arrays,
+                      const Function& function) const {
     std::uint32_t j[lanes], at[lanes];
-    std::uint32_t m = 0;
-    for (; m < least_; ++m) {
+    for (; m < std::min(end, least_); ++m) {
 #pragma GCC unroll 8
       for (int k = 0; k < lanes; ++k) {
         const std::uint32_t pair = lane_[k].first + m;
         j[k] = lane_[k].i + static_cast<std::uint32_t>(arrays.offset[pair]);
         at[k] = pair * (D + 1);
       }
-      function(IndexPack::load(j), IndexPack::load(at));
+      function.template operator()<Controlled>(IndexPack::load(j), IndexPack::load(at));
     }
-    for (; m < most_; ++m) {
+    for (; m < end; ++m) {
       for (int k = 0; k < lanes; ++k) {
         const bool has = m < lane_[k].n;
         const std::uint32_t pair = has ? lane_[k].first + m : arrays.none;
         j[k] = lane_[k].i + (has ? static_cast<std::uint32_t>(arrays.offset[pair]) : 0u);
         at[k] = pair * (D + 1);
       }
-      function(IndexPack::load(j), IndexPack::load(at));
+      function.template operator()<Controlled>(IndexPack::load(j), IndexPack::load(at));
     }
   }
 
- private:
   struct Lane {
-    std::uint32_t i, first, n, pattern;
+    std::uint32_t i, first, n, controlled, pattern;
   };
   Lane lane_[lanes];
-  std::uint32_t i_[lanes], pattern_[lanes], least_ = 0, most_ = 0;
+  std::uint32_t i_[lanes], pattern_[lanes], least_ = 0, most_ = 0, controlled_ = 0;
   int size_ = 0;
 };
 
@@ -215,14 +223,15 @@ void deformations(const StencilArrays& arrays, const Loners& loners, const doubl
   gather_tuple<D>(x, i, own);
   for (int r = 0; r < D; ++r)
     for (int c = 0; c < sums; ++c) sum[r][c] = 0.0;
-  loners.for_each_neighbour<D>(arrays, [&](IndexPack j, IndexPack at) {
+  const auto add = [&]<bool Controlled>(IndexPack j, IndexPack at) {
     gather_tuple<D>(x, j, theirs);
     gather_tuple<D + 1, 1>(arrays.forward, at, w);
     for (int r = 0; r < D; ++r) {
       const Pack difference = theirs[r] - own[r];
-      for (int c = 0; c < sums; ++c) sum[r][c] += difference * w[c];
+      for (int c = 0; c < (Controlled ? sums : D); ++c) sum[r][c] += difference * w[c];
     }
-  });
+  };
+  loners.for_each_neighbour<D, Hourglass>(arrays, add);
   Pack gradient[D * D], held[D];
   for (int r = 0; r < D; ++r) {
     for (int c = 0; c < D; ++c) gradient[r * D + c] = sum[r][c];
@@ -237,24 +246,25 @@ void forces(const StencilArrays& arrays, const Loners& loners, const double* P, 
             double factor, double* out) {
   const IndexPack i = loners.particles();
   Pack stress[D * D], control[D], w[D + 1], sum[D][D + 1];
-  const auto look = [&](IndexPack j) {
+  const auto look = [&]<bool Controlled>(IndexPack j) {
     gather_tuple<D * D>(P, j, stress);
-    if constexpr (Hourglass) gather_tuple<D>(q, j, control);
+    if constexpr (Controlled) gather_tuple<D>(q, j, control);
   };
-  look(i);
+  look.template operator()<Hourglass>(i);
   gather_tuple<D + 1>(arrays.sums, loners.patterns(), w);
   for (int r = 0; r < D; ++r) {
     for (int c = 0; c < D; ++c) sum[r][c] = stress[r * D + c] * w[c];
     if constexpr (Hourglass) sum[r][D] = control[r] * w[D];
   }
-  loners.for_each_neighbour<D>(arrays, [&](IndexPack j, IndexPack at) {
-    look(j);
+  const auto add = [&]<bool Controlled>(IndexPack j, IndexPack at) {
+    look.template operator()<Controlled>(j);
     gather_tuple<D + 1, 1>(arrays.backward, at, w);
     for (int r = 0; r < D; ++r) {
       for (int c = 0; c < D; ++c) sum[r][c] -= stress[r * D + c] * w[c];
-      if constexpr (Hourglass) sum[r][D] -= control[r] * w[D];
+      if constexpr (Controlled) sum[r][D] -= control[r] * w[D];
     }
-  });
+  };
+  loners.for_each_neighbour<D, Hourglass>(arrays, add);
   Pack f[D];
   for (int r = 0; r < D; ++r) {
     f[r] = sum[r][0];
