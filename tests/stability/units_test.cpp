@@ -16,7 +16,10 @@ void check_scaled(const char* name, const std::string& scene) {
   REQUIRE_MESSAGE(metres.code == 0, metres.err);
   const auto lengths = rows(label("metres") + "/probes/lengths.csv");
   REQUIRE(lengths.size() > 5);
-  for (const auto& [size, exponent] : {std::pair{"nanometres", -30}, std::pair{"kilometres", 10}}) {
+  for (const auto& scaling : {std::pair{"nanometres", -30}, std::pair{"kilometres", 10}}) {
+    // No structured binding: CAPTURE is a lambda, and clang 14 lets none use one.
+    const char* const size = scaling.first;
+    const int exponent = scaling.second;
     CAPTURE(name);
     CAPTURE(size);
     char scale[80];
