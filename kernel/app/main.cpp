@@ -12,10 +12,20 @@
 #include "kernel/particles/errors.hpp"
 #include "kernel/plugins/errors.hpp"
 
-#ifdef __SANITIZE_ADDRESS__
-// LeakSanitizer of gcc 12 falls over the thread-local storage of VTK's libraries, which a plugin opens.
-extern "C" __attribute__((visibility("default"))) const char* __lsan_default_options();  // NOLINT
-extern "C" __attribute__((visibility("default"))) const char* __lsan_default_options() { return "use_tls=0"; }
+#ifdef __has_feature
+#define SHOAL_ADDRESS_SANITIZER __has_feature(address_sanitizer)
+#elif defined(__SANITIZE_ADDRESS__)
+#define SHOAL_ADDRESS_SANITIZER 1
+#endif
+
+#if SHOAL_ADDRESS_SANITIZER
+// LeakSanitizer of gcc 12 and clang 14 falls over the thread-local storage of VTK's libraries, which a plugin opens. So it
+// does not look there, and takes for lost what the loader of the system keeps there.
+#define SHOAL_LSAN extern "C" __attribute__((visibility("default"))) const char*
+SHOAL_LSAN __lsan_default_options();  // NOLINT
+SHOAL_LSAN __lsan_default_options() { return "use_tls=0:print_suppressions=0"; }
+SHOAL_LSAN __lsan_default_suppressions();  // NOLINT
+SHOAL_LSAN __lsan_default_suppressions() { return "leak:_dlerror_run\nleak:add_to_global_resize\n"; }
 #endif
 
 namespace shoal::kernel::app {

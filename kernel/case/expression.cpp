@@ -394,6 +394,7 @@ struct Expression::Points {
 namespace {
 
 std::array<const double*, 3> interleaved(int dimensions, const double* points) {
+  if (points == nullptr) return {};  // a list without a point may have no place
   return {dimensions > 0 ? points : nullptr, dimensions > 1 ? points + 1 : nullptr,
           dimensions > 2 ? points + 2 : nullptr};
 }

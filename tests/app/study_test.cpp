@@ -288,11 +288,13 @@ TEST_CASE("a report holds what its cases give, and runs nothing twice") {
   CHECK(shoal({"report", "nowhere"}).code == 2);
 
   // With limits, and within a time in which the first case alone is done.
-  write("cases/soft/decay.yaml", decaying("output:\n  - grains.tables: {every: 1 ms, pause: 0.5}\n"));
+  const std::string seconds = std::to_string(2 * slower) + " s";
+  write("cases/soft/decay.yaml",
+        decaying("output:\n  - grains.tables: {every: 1 ms, pause: " + std::to_string(0.5 * slower) + "}\n"));
   write("cases/soft/broken.yaml", decaying(""));
-  shoal({"report", "cases", "-o", "report", "--results", "bounded", "--limits", "--within", "2 s"});
+  shoal({"report", "cases", "-o", "report", "--results", "bounded", "--limits", "--within", seconds});
   const std::string bounded = read("report/report.md");
-  CHECK(contains(bounded, "; each case within 2 s"));
+  CHECK(contains(bounded, "; each case within " + seconds));
   CHECK(contains(bounded, "| soft/broken | Falling grains | 1 | no reference |  |  |  |"));
   CHECK(contains(bounded, "| step_factor 1.949 (1) |"));
   CHECK(contains(bounded, "| step_factor | 1 | 1.949 | 2.144 | speed [m/s] of speed reaches "));

@@ -23,6 +23,18 @@
 
 namespace app_test {
 
+// How much longer the program takes with sanitizers, roughly: for tests of limits of time.
+#ifdef __has_feature
+#define SHOAL_ADDRESS_SANITIZER __has_feature(address_sanitizer)
+#elif defined(__SANITIZE_ADDRESS__)
+#define SHOAL_ADDRESS_SANITIZER 1
+#endif
+#if SHOAL_ADDRESS_SANITIZER
+constexpr int slower = 6;
+#else
+constexpr int slower = 1;
+#endif
+
 inline std::string read(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;

@@ -37,7 +37,7 @@ typedef struct shoal_stress_block {
   double time;                         // s, at the end of the step
   double dt;                           // s since the state was last written; for laws that depend on the rate
   const double* deformation_gradient;  // F at the end of the step
-  double* const* fields;         // [field, in the order of `fields`]: values of the block's first particle
+  double* const* fields;         // [field, in the order of `fields`]: at the block's first particle; padded
   double* stress;                // P, Pa; this and each of the following may be NULL
   double* energy;                // W, J/m3; what is stored, not what plastic flow dissipated
   double* out_of_plane_stress;   // P33, Pa; of blocks in the plane

@@ -135,6 +135,7 @@ TEST_CASE(
   const auto* functions = static_cast<const shoal_stress_law*>(api->interface(self, SHOAL_STRESS_LAW, 1));
   const double position[3] = {0, 0, 0};
   std::vector<double> f{0, 0, 0}, s{-s30, c30, 0};
+  for (auto* field : {&f, &s}) field->reserve(3 + SHOAL_PADDING);
   double* fields[] = {f.data(), s.data()};
   std::uint32_t n = 0;
   const shoal_access* list = functions->fields(self, SHOAL_THREE_DIMENSIONAL, &n);
