@@ -108,9 +108,13 @@ void Contact::build(const Builder& b) {
   for (const BodyIndex body : list)
     if (!seen.insert(body.value).second)
       throw CaseError(bodies.place() + ": solid.contact names body '" + b.body(body).name + "' twice");
-  for (const BodyIndex body : self.value())
+  std::set<std::uint32_t> seen_self;
+  for (const BodyIndex body : self.value()) {
+    if (!seen_self.insert(body.value).second)
+      throw CaseError(self.place() + ": solid.contact names body '" + b.body(body).name + "' twice");
     if (std::none_of(list.begin(), list.end(), [&](BodyIndex other) { return other.value == body.value; }))
       throw CaseError(self.place() + ": body '" + b.body(body).name + "' is not among the bodies in contact");
+  }
   declare_loop(b);
   b.renew_neighbours_in("structure");
   std::vector<Touch> touches;

@@ -48,6 +48,8 @@ void Torque::build(const Builder& b) {
   if (direction.size() != 3) throw CaseError(axis.place() + ": the axis of a torque has three components");
   const double length = std::hypot(direction[0], direction[1], direction[2]);
   if (!(length > 0.0)) throw CaseError(axis.place() + ": the axis of a torque has no direction");
+  if (b.dimensions() == 2 && (direction[0] != 0.0 || direction[1] != 0.0))
+    throw CaseError(axis.place() + ": in two dimensions a torque turns about z; leave the axis out");
   for (const BodyIndex body : bodies.value())
     b.attach<TorqueLoad>("solid.torque", at_forces, b.target(body), [&](auto& op) {
       op.loaded.region = region_of(where, within, b.dimensions());

@@ -15,8 +15,10 @@ void TractionLoad::begin() {
     for (const std::uint64_t i : loaded.particles())
       for (std::size_t a = 0; a < d; ++a) normal_[a] += area.data()[i * d + a];
     face_ = std::hypot(normal_[0], normal_[1], normal_[2]);
-    if (!(face_ > 0.0))
-      throw CaseError(loaded.region.place + ": the region of the traction holds no surface");
+    if (!(face_ > 1e-6 * std::pow(spacing(), dimensions() - 1)))
+      throw CaseError(loaded.region.place +
+                      ": the region of the traction holds no surface; it is the particles within 5 spacings "
+                      "of one flat face");
     for (double& component : normal_) component /= face_;
   }
   for (std::size_t a = 0; a < d; ++a)
@@ -49,7 +51,7 @@ void PointForceLoad::begin() {
   }
   std::array<double, 3> at = point;
   for (std::size_t a = 0; a < d; ++a)
-    value_[a] = force.component[a](dimensions(), at.data(), time() + 0.5 * dt());
+    value_[a] = finite(force.component[a](dimensions(), at.data(), time() + 0.5 * dt()), time() + 0.5 * dt());
 }
 
 void TorqueLoad::begin() {
@@ -71,7 +73,12 @@ void TorqueLoad::begin() {
     }
     inertia += mass.data()[i] * (square - along * along);
   }
-  angular_acceleration_ = torque(dimensions(), centre_.data(), time() + 0.5 * dt()) / inertia;
+  if (!(inertia > 1e-9 * total * spacing() * spacing()))
+    throw CaseError(loaded.region.place +
+                    ": the particles of the region lie on the axis of the torque, about which they cannot "
+                    "turn; choose a region of more particles");
+  const double middle = time() + 0.5 * dt();
+  angular_acceleration_ = finite(torque(dimensions(), centre_.data(), middle), middle) / inertia;
 }
 
 }  // namespace shoal::solid

@@ -17,11 +17,14 @@ namespace shoal::solid {
 
 struct QuasiStatic final : SolidPhysics {
   Param<double> tolerance{
-      "tolerance", "1",
+      "tolerance",
+      "1",
       "Out-of-balance force at which the body counts as at rest and the run ends: its norm over all "
       "particles that "
       "are free to move, over the sum of the norms of the internal force and of the loads.",
-      positive, default_to(1e-6)};
+      positive,
+      below(1.0),
+      default_to(1e-6)};
   Param<std::int64_t> iterations{
       "iterations", "1",
       "Most iterations; as many steps make the time of the run. Not to be at rest by then "

@@ -5,7 +5,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <span>
 #include <string>
@@ -14,6 +16,17 @@
 #include "shoal/parameters.hpp"
 
 namespace shoal::solid {
+
+// Loads and motions that a case gives as expressions of t must stay numbers.
+inline double finite(double value, double time) {
+  if (std::isfinite(value)) return value;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "a value that the case gives is not a finite number at t = %.6g s; check for a division by "
+                "zero or a root of a negative number",
+                time);
+  throw CaseError(text);
+}
 
 class Region {
  public:
@@ -77,7 +90,7 @@ class RegionValues {
   // Written to `out` at the particles' own numbers.
   void evaluate(const Expression& expression, int dimensions, double time, std::vector<double>& out) const {
     expression.evaluate(dimensions, particles_.size(), positions_.data(), time, values_.data());
-    for (std::size_t k = 0; k < particles_.size(); ++k) out[particles_[k]] = values_[k];
+    for (std::size_t k = 0; k < particles_.size(); ++k) out[particles_[k]] = finite(values_[k], time);
   }
 
  private:

@@ -3,6 +3,8 @@
 #include "solid_body.hpp"
 
 #include <algorithm>
+#include <map>
+#include <memory>
 #include <utility>
 
 #include "deformation.hpp"
@@ -17,6 +19,17 @@
 namespace shoal::solid {
 namespace {
 
+// The state and the forces of a body belong to one physics, which is named once.
+void claim(const SolidPhysics& physics, const Builder& b, BodyIndex body, const SharedStructure& structure) {
+  static std::map<std::pair<const void*, std::uint32_t>, std::weak_ptr<Structure>> known;
+  std::weak_ptr<Structure>& entry = known[{structure->law.self, body.value}];
+  if (!entry.expired())
+    throw CaseError(physics.bodies.place() + ": body '" + b.body(body).name +
+                    "' is named twice; each solid body has one solid.total_lagrangian or one "
+                    "solid.quasi_static");
+  entry = structure;
+}
+
 SharedStructure structure_of(const SolidPhysics& physics, const Builder& b, BodyIndex body) {
   auto structure = std::make_shared<Structure>();
   structure->law = b.material_interface<shoal_stress_law>(body, SHOAL_STRESS_LAW, SHOAL_STRESS_LAW_REVISION);
@@ -27,6 +40,8 @@ SharedStructure structure_of(const SolidPhysics& physics, const Builder& b, Body
         "youngs_modulus: 1e6, poisson_ratio: 0.3}}");
   if (b.dimensions() == 2)
     structure->kinematics = physics.plane.value() == "stress" ? SHOAL_PLANE_STRESS : SHOAL_PLANE_STRAIN;
+  else if (physics.plane.value() == "stress")
+    throw CaseError(physics.plane.place() + ": plane: stress is for two dimensions; leave it out");
   structure->constants.size = sizeof structure->constants;
   structure->law.api->constants(structure->law.self, structure->kinematics, &structure->constants);
   const double dx = b.body(body).spacing;
@@ -36,6 +51,11 @@ SharedStructure structure_of(const SolidPhysics& physics, const Builder& b, Body
     throw CaseError(physics.average_volume.place() + ": the material of body '" + b.body(body).name +
                     "' does not keep volume and shape apart, so there is no pressure to average; "
                     "solid.neo_hookean (form: split) and solid.mooney_rivlin do");
+  if (physics.average_volume->word == "always" && structure->kinematics == SHOAL_PLANE_STRESS)
+    throw CaseError(physics.average_volume.place() +
+                    ": in plane stress a sheet keeps its volume by its thickness, so there is no pressure to "
+                    "average; leave average_volume out, or take plane: strain");
+  claim(physics, b, body, structure);
   structure->end_correction = physics.end_correction;
   structure->held = held_regions(b, body);
   structure->hourglass = physics.hourglass * structure->constants.shear_modulus;

@@ -150,7 +150,7 @@ inline void LawDirection::initialise(int dimensions, std::uint64_t n, const doub
     double squared = 0.0;
     for (std::uint64_t a = 0; a < d; ++a) squared += values[i * d + a] * values[i * d + a];
     const double length = std::sqrt(squared);
-    if (direction_.is_set() && length > 0.0)
+    if (direction_.is_set() && length > 0.0 && std::isfinite(length))
       for (std::uint64_t a = 0; a < d; ++a) values[i * d + a] /= length;
     else if (!(std::fabs(length - 1.0) < 1e-6))
       throw CaseError(std::string("the material needs the direction '") + field_ +

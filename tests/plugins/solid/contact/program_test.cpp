@@ -100,6 +100,14 @@ TEST_CASE("what cannot be in contact is refused with the place and the remedy") 
       "solid.contact needs two bodies that may touch, or one that may touch itself, e.g. {bodies: [tube], "
       "self: [tube]}"));
   CHECK(contains(refusal("  - solid.contact: {bodies: [hard, hard]}\n"), "names body 'hard' twice"));
+  CHECK(contains(refusal("  - solid.contact: {bodies: [hard, soft], self: [soft, soft]}\n"),
+                 "names body 'soft' twice"));
+  CHECK(contains(refusal("  - solid.contact: {bodies: [hard, soft], friction: -0.1}\n"),
+                 "'friction' must be at least 0, got -0.1"));
+  CHECK(contains(refusal("  - solid.contact: {bodies: [hard, soft], stiffness: 0}\n"),
+                 "'stiffness' must be greater than 0, got 0"));
+  CHECK(contains(refusal("  - solid.contact: {bodies: [hard, soft], self: [soft], self_distance: 2}\n"),
+                 "'self_distance' must be at least 3, got 2"));
   CHECK(contains(refusal("  - solid.contact: {bodies: [hard], self: [soft]}\n"),
                  "body 'soft' is not among the bodies in contact"));
   CHECK(contains(refusal("  - solid.rigid_plane: {bodies: [hard], point: [0, 0], normal: [0, 0]}\n"),
