@@ -23,11 +23,11 @@ constexpr std::size_t most_candidates = 64;
 // |sum_j w_ij (X_j - X_i) / h| over sum_j w_ij is 0.38 at a flat surface of a lattice and 0.69 at a corner in 2D, 0.27,
 // 0.43 and 0.62 at a surface, an edge and a corner in 3D, within 0.07 for supports of 2.1 to 3 spacings.
 constexpr double asymmetry_of_corners = 0.53;
-template <int D>
-constexpr double edges = D == 2 ? asymmetry_of_corners : 0.35;
 constexpr double more_at_corners = 100.0;  // of eps
 
-// Radius within which the hourglass residual looks but at edges, over the spacing: two spacings along an axis.
+// The layer next to a flat surface is below it, the surface above.
+constexpr double asymmetry_of_surfaces = 0.15;
+// Radius within which the hourglass residual looks but at surfaces, over the spacing: two spacings along an axis.
 constexpr double near = 2.1;
 
 // The neighbours of a particle as the fit sees them.
@@ -61,7 +61,7 @@ struct Surroundings {
       neighbours.push_back({monomials<D>(d / kernel.h()), volume * kernel.w(r), -volume * kernel.dw_over_r(r),
                             volume * std::max(0.0, 1.0 - r * r / (reach * reach)), volume});
     }
-    if (near * spacing > 2.0 * kernel.h() || one_sided() > edges<D>) return;
+    if (near * spacing > 2.0 * kernel.h() || one_sided() > asymmetry_of_surfaces) return;
     for (Neighbour& j : neighbours)
       j.even = j.p.template head<D>().norm() * kernel.h() < near * spacing ? j.volume : 0.0;
   }

@@ -93,9 +93,9 @@ std::vector<long double> fit(testing::Body& body, const std::vector<double>& f, 
     for (int a = 0; a < D; ++a) p.push_back(d[a]);
     for (int a = 0; a < D; ++a)
       for (int c = a; c < D; ++c) p.push_back(d[a] * d[c]);
-    // The residual's weight falls off as a parabola, so that it looks beyond the nearest layers, and but at edges and
-    // corners is even within 2.1 spacings.
-    const double slow = asymmetry > (D == 2 ? 0.53 : 0.35) ? std::max(0.0, 1.0 - square / 4.0)
+    // The residual's weight falls off as a parabola, so that it looks beyond the nearest layers, and but at surfaces is
+    // even within 2.1 spacings.
+    const double slow = asymmetry > 0.15                   ? std::max(0.0, 1.0 - square / 4.0)
                         : std::sqrt(square) * h < 2.1 * dx ? 1.0
                                                            : 0.0;
     const double w = body["volume"][j] * (free_value ? slow : kernel.w(std::sqrt(square) * h));
