@@ -17,7 +17,7 @@
 // that fall off slowly: a quadratic passes through any three layers, and w leaves little more than three (of two spacings
 // it is half a per cent of that of one), so that with it the residual of what alternates from layer to layer was 0.03 of
 // its amplitude in 3D, against 0.45 where it alternates along all axes; with v they are 0.22 and 0.22 (in 2D 0.44, 0.48).
-// But in the outermost layer v is V_j within 2.1 spacings and zero beyond: that sees as much (0.20 and 0.22; in 2D 0.44,
+// Behind the outermost layer v is V_j within 2.1 spacings and zero beyond: that sees as much (0.20 and 0.22; in 2D 0.44,
 // 0.44) of 32 neighbours as the other of 56 (12 of 20 in 2D), so that the control costs less. Surfaces have few neighbours: with
 // the near ones alone a column of four particles across lost its turns at half the default strength.
 //
