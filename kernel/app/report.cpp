@@ -119,6 +119,8 @@ std::string body_text(const PlanBody& body) {
     bytes += field.bytes_per_particle;
   }
   rows.push_back({"all fields", "", "", "", std::to_string(bytes) + " bytes per particle"});
+  if (body.kept_bytes_per_particle > 0)
+    rows.push_back({"records of operators", "", "", "", std::to_string(body.kept_bytes_per_particle)});
   return text + table(rows, 4, "    ");
 }
 

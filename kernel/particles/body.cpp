@@ -134,10 +134,12 @@ void Body::renew_halo(Field& field) const {
   halo_.renew(field, n_owned_);
   reference_halo_.renew(field, reference_halo_begin());
   field.halo_stale = false;
+  ++field.changes;
 }
 
 void Body::mark_written(Field& field, bool poison) const {
   field.halo_stale = true;
+  ++field.changes;
   if (poison && n_halo() > 0) field.poison(n_owned_, n_total());
 }
 

@@ -112,6 +112,7 @@ void Field::merge(const FieldSpecification& other, const std::string& declarer) 
 bool Field::resize(std::uint64_t n, std::uint64_t kept) {
   const std::uint64_t padded = (n / SHOAL_PADDING + 1) * SHOAL_PADDING;
   const bool moves = padded > capacity_;
+  ++changes;
   if (moves) {
     // A first allocation fits exactly; images and inlets then grow it by a quarter at a time.
     const std::uint64_t wanted = capacity_ == 0 ? padded : std::max(padded, capacity_ + capacity_ / 4);
@@ -136,6 +137,7 @@ void gather(const char* from, char* to, const std::uint32_t* order, std::uint64_
 }  // namespace
 
 void Field::permute(const std::uint32_t* order, std::uint64_t n, void* scratch) {
+  ++changes;
   char* values = static_cast<char*>(data());
   char* copy = static_cast<char*>(scratch);
   const std::uint64_t bytes = bytes_per_particle();
@@ -159,6 +161,7 @@ void Field::permute(const std::uint32_t* order, std::uint64_t n, void* scratch) 
 }
 
 void Field::clear(std::uint64_t n) {
+  ++changes;
   for_each_range(n, [&](std::uint64_t begin, std::uint64_t end) {
     std::memset(static_cast<char*>(data()) + begin * bytes_per_particle(), 0,
                 (end - begin) * bytes_per_particle());
@@ -166,6 +169,7 @@ void Field::clear(std::uint64_t n) {
 }
 
 void Field::poison(std::uint64_t begin, std::uint64_t end) {
+  ++changes;
   if (specification_.data_type == SHOAL_INT64)
     std::fill(integers() + begin * components_, integers() + end * components_,
               std::numeric_limits<std::int64_t>::min());

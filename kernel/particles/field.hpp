@@ -65,9 +65,10 @@ class Field {
   /// NaN, or the smallest integer, so that an undeclared read is seen.
   void poison(std::uint64_t begin, std::uint64_t end);
 
-  bool derived = false;      ///< need not survive a restart
-  bool halo_stale = true;    ///< written since the images were last renewed
-  bool halo_needed = false;  ///< a scheduled operator reads it of its neighbours
+  bool derived = false;       ///< need not survive a restart
+  bool halo_stale = true;     ///< written since the images were last renewed
+  bool halo_needed = false;   ///< a scheduled operator reads it of its neighbours
+  std::uint64_t changes = 0;  ///< grows whenever values change
 
  private:
   struct Release {

@@ -15,7 +15,7 @@
 namespace shoal::kernel {
 
 /// Particles in a chunk of an operator's work.
-inline constexpr std::uint64_t chunk_size = 256;
+inline constexpr std::uint64_t chunk_size = 128;
 /// Below this many particles everything runs on the calling thread, but for operators whose calls have taken long enough
 /// so far: a pass over pairs of 1000 particles gains by a second thread, and so do those at the walls of 3000 (0.7 of the
 /// time in dam_break_2d on an idle machine).

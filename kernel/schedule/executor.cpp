@@ -75,7 +75,7 @@ bool pays_on_threads(const OperatorRun& op, std::uint64_t n) {
   return n >= serial_below || (op.calls > 0 && op.ticks / op.calls >= worth_threads);
 }
 
-// function(chunk) for chunks of 256 particles.
+// function(chunk) for chunks of 128 particles.
 template <class Function>
 void for_each_chunk(std::uint64_t n, bool on_threads, double* partials, std::size_t stride,
                     const Function& function) {
@@ -149,6 +149,7 @@ void Executor::bind(OperatorRun& op) {
     c.data = field != nullptr ? const_cast<void*>(field->data()) : nullptr;
     c.n_owned = body.n_owned();
     c.n_total = body.n_total();
+    c.changes = field != nullptr ? &field->changes : nullptr;
     return c;
   };
   const std::vector<Access>& accesses = op.attachment.accesses;
@@ -276,23 +277,27 @@ void Executor::run_chunks(OperatorRun& op, const shoal_step& step) {
     for (std::size_t r = 0; r < n_reductions; ++r)
       op.partials[k * n_reductions + r] = identity(op.attachment.reductions[r]);
 
-  Failure failure;
-  const auto run_one = [&](const shoal_chunk& chunk) {
-    if (failure.happened()) return;
-    std::string thrown;
-    const shoal_status status = protect(thrown, [&] { return op.c().run(op.c().self, &step, &chunk); });
-    if (status != SHOAL_OK) failure.note(chunk.number, status, thrown.empty() ? take_text() : thrown);
+  const auto call_with_chunks = [&](const char* name, auto callback) {
+    Failure failure;
+    const auto one = [&](const shoal_chunk& chunk) {
+      if (failure.happened()) return;
+      std::string thrown;
+      const shoal_status status = protect(thrown, [&] { return callback(op.c().self, &step, &chunk); });
+      if (status != SHOAL_OK) failure.note(chunk.number, status, thrown.empty() ? take_text() : thrown);
+    };
+    if (serial) {
+      shoal_chunk chunk{};
+      chunk.size = sizeof chunk;
+      chunk.end = n;
+      chunk.partial = op.partials.data();
+      one(chunk);
+    } else {
+      for_each_chunk(n, pays_on_threads(op, n), op.partials.data(), n_reductions, one);
+    }
+    if (failure.happened()) fail(op, name, failure.status(), failure.text(), &step);
   };
-  if (serial) {
-    shoal_chunk chunk{};
-    chunk.size = sizeof chunk;
-    chunk.end = n;
-    chunk.partial = op.partials.data();
-    run_one(chunk);
-  } else {
-    for_each_chunk(n, pays_on_threads(op, n), op.partials.data(), n_reductions, run_one);
-  }
-  if (failure.happened()) fail(op, "run", failure.status(), failure.text(), &step);
+  if (op.c().prepare != nullptr) call_with_chunks("prepare", op.c().prepare);
+  call_with_chunks("run", op.c().run);
   reduce(op, chunks);
 }
 

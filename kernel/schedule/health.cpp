@@ -105,7 +105,8 @@ void Health::guard(Body& body, Field& field, double minimum, double maximum) {
                      std::vector<double>(n, std::min(maximum, largest)), Guard::Kind::range});
 }
 
-bool Health::holds(const Guard& guard) {
+bool Health::holds(Guard& guard) {
+  if (guard.held_at == guard.field->changes) return true;
   std::atomic<bool> inside = true;
   const std::uint32_t components = guard.field->components();
   const double* values = guard.field->reals();
@@ -114,6 +115,7 @@ bool Health::holds(const Guard& guard) {
                     guard.maximum.data()))
       inside.store(false, std::memory_order_relaxed);
   });
+  if (inside.load()) guard.held_at = guard.field->changes;
   return inside.load();
 }
 
@@ -175,13 +177,13 @@ void Health::fail(const Guard& guard, const Whereabouts& where) {
   throw PhysicsFailure(std::move(report));
 }
 
-void Health::check(const Whereabouts& where) const {
-  for (const Guard& guard : guards_)
+void Health::check(const Whereabouts& where) {
+  for (Guard& guard : guards_)
     if (!holds(guard)) fail(guard, where);
 }
 
-void Health::check_positions(const Whereabouts& where) const {
-  for (const Guard& guard : guards_)
+void Health::check_positions(const Whereabouts& where) {
+  for (Guard& guard : guards_)
     if (guard.kind == Guard::Kind::position && guard.body->position_changed && !holds(guard))
       fail(guard, where);
 }

@@ -30,10 +30,10 @@ class Health {
   void watch(const Domain& domain, std::vector<std::unique_ptr<Body>>& bodies);
   void guard(Body& body, Field& field, double minimum, double maximum);
 
-  /// Throws PhysicsFailure with the worst particles.
-  void check(const Whereabouts& where) const;
+  /// Throws PhysicsFailure with the worst particles. Fields that have not changed since they held are not looked at.
+  void check(const Whereabouts& where);
   /// Only the positions of bodies that have moved: before neighbours are searched.
-  void check_positions(const Whereabouts& where) const;
+  void check_positions(const Whereabouts& where);
 
  private:
   struct Guard {
@@ -41,8 +41,9 @@ class Health {
     Field* field = nullptr;
     std::vector<double> minimum, maximum;  ///< per component
     enum class Kind { position, finite, range } kind = Kind::range;
+    std::uint64_t held_at = UINT64_MAX;  ///< the field's count of changes when it last held
   };
-  static bool holds(const Guard& guard);
+  static bool holds(Guard& guard);
   [[noreturn]] static void fail(const Guard& guard, const Whereabouts& where);
 
   std::vector<Guard> guards_;

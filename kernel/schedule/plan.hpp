@@ -67,6 +67,7 @@ struct PlanBody {
   std::uint64_t field_bytes = 0;  ///< allocated
   std::uint64_t list_bytes =
       0;  ///< of the lists whose rows are this body's particles, with what operators keep
+  std::uint32_t kept_bytes_per_particle = 0;  ///< that operators keep beside the fields
 };
 
 struct Plan {

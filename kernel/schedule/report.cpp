@@ -127,8 +127,13 @@ Plan Simulation::Implementation::plan() const {
     for (std::size_t k = 0; k < relations.size(); ++k)
       if (relations[k].body == body->index())
         plan.bodies.back().list_bytes += kept_bytes(relations[k], plan.relations[k].kept_bytes_per_pair);
+    for (const auto& op : schedule.operators)
+      for (const std::uint32_t used : op->relations)
+        if (relations[used].neighbours == body->index())
+          plan.bodies.back().kept_bytes_per_particle += op->c().bytes_per_particle;
     plan.particles += body->n_owned();
-    plan.total_bytes += plan.bodies.back().field_bytes + plan.bodies.back().list_bytes;
+    plan.total_bytes += plan.bodies.back().field_bytes + plan.bodies.back().list_bytes +
+                        plan.bodies.back().kept_bytes_per_particle * body->n_owned();
   }
   plan.unscheduled = schedule.unscheduled;
   plan.notes = declarations.notes;

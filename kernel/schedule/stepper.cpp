@@ -18,7 +18,7 @@ constexpr double slack = 1.0 + 1e-9;
 
 }  // namespace
 
-Stepper::Stepper(Schedule& schedule, Executor& executor, Neighbourhood& neighbourhood, const Health& health,
+Stepper::Stepper(Schedule& schedule, Executor& executor, Neighbourhood& neighbourhood, Health& health,
                  int dimensions)
     : schedule_(schedule),
       executor_(executor),

@@ -24,7 +24,7 @@ inline constexpr double steps_without_limit = 1000.0;
 
 class Stepper {
  public:
-  Stepper(Schedule& schedule, Executor& executor, Neighbourhood& neighbourhood, const Health& health,
+  Stepper(Schedule& schedule, Executor& executor, Neighbourhood& neighbourhood, Health& health,
           int dimensions);
 
   /// One outer step, at most to `target`; `span` is the length of the whole run, for runs without any limit.
@@ -58,7 +58,7 @@ class Stepper {
   Schedule& schedule_;
   Executor& executor_;
   Neighbourhood& neighbourhood_;
-  const Health& health_;
+  Health& health_;
   int dimensions_;
 };
 

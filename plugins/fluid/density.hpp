@@ -14,6 +14,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 
 #include "intermittent.hpp"
 
@@ -30,6 +31,8 @@ struct WallDensity : IntermittentPairOperator<WallDensity> {
 
 template <class Derived>
 struct DensitySum : IntermittentPairOperator<Derived> {
+  static constexpr bool single_in_3d_only = true;
+
   In<Scalar> mass{"mass", own_only};
   InOut<Scalar> density{"density"};
   Out<Scalar> volume{"volume"};
@@ -39,6 +42,7 @@ struct DensitySum : IntermittentPairOperator<Derived> {
   bool free_surface = true;
   double tolerance = 0;   // kg/m3
   double relaxation = 1;  // share of what is beyond the tolerance
+  std::shared_ptr<SinglePrecision> single;
 
   auto pair(const auto& p) const { return p.W(); }
 

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <memory>
+#include <tuple>
 
 #include "shoal/pair_operator.hpp"
 #include "shoal/physics.hpp"
@@ -48,8 +49,14 @@ struct DiffusivePressureForce : PairOperator<DiffusivePressureForce<Kind, Correc
   double diffusivity = 0;        // D, m2/s
   double gradient_scale = 1;     // 1 / slope of lattice_sums()
   Vector3 gravity{};             // m/s2
-  std::shared_ptr<FrozenGeometry> geometry;
+  std::shared_ptr<SinglePrecision> single;
 
+  auto neighbour_fields() const {
+    if constexpr (Kind == Diffusion::antuono)
+      return std::tie(last_acceleration, pressure);
+    else
+      return std::tie(pressure);
+  }
   auto pair(const auto& p) const {
     const auto weight = p.weight(volume);
     const auto p_j = p.j(pressure);
@@ -97,8 +104,9 @@ struct ViscousDivergence : PairOperator<ViscousDivergence<Corrected>> {
   double sound_speed = 0;        // m/s
   double reference_density = 0;  // kg/m3
   double gradient_scale = 1;     // 1 / slope of lattice_sums()
-  std::shared_ptr<FrozenGeometry> geometry;
+  std::shared_ptr<SinglePrecision> single;
 
+  auto neighbour_fields() const { return std::tie(velocity); }
   auto pair(const auto& p) const {
     const auto weight = p.weight(volume);
     const auto v = p.i(velocity) - p.j(velocity);

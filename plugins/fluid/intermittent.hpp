@@ -17,8 +17,15 @@ struct IntermittentPairOperator : PairOperator<Derived> {
 
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {
-    if (this->step().number % interval == 0) PairOperator<Derived>::template run_chunk<D>(chunk);
+    if (works()) PairOperator<Derived>::template run_chunk<D>(chunk);
   }
+  template <int D>
+  void prepare_chunk(const shoal_chunk& chunk) const {
+    if (works()) PairOperator<Derived>::template prepare_chunk<D>(chunk);
+  }
+
+ private:
+  bool works() const { return this->step().number % interval == 0; }
 };
 
 }  // namespace shoal::fluid

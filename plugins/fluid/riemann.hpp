@@ -24,6 +24,7 @@
 #pragma once
 
 #include <memory>
+#include <tuple>
 
 #include "shoal/pair_operator.hpp"
 
@@ -56,8 +57,9 @@ struct PressureForceOf : PairOperator<PressureForceOf<Corrected>> {
   double sound_speed = 0;        // m/s
   double dissipation = 1;        // B
   double gradient_scale = 1;     // 1 / slope of lattice_sums()
-  std::shared_ptr<FrozenGeometry> geometry;
+  std::shared_ptr<SinglePrecision> single;
 
+  auto neighbour_fields() const { return std::tie(last_acceleration, pressure); }
   auto pair(const auto& p) const {
     const auto weight = p.weight(volume);
     const auto p_j = p.j(pressure);
@@ -98,14 +100,15 @@ struct VelocityDivergenceOf : PairOperator<VelocityDivergenceOf<Corrected>> {
   double least = 0.0;            // smallest beta, also in expansion
   double most = 1.0;             // B, the largest
   double gradient_scale = 1;     // 1 / slope of lattice_sums()
-  std::shared_ptr<FrozenGeometry> geometry;
+  std::shared_ptr<SinglePrecision> single;
 
+  auto neighbour_fields() const { return std::tie(velocity); }
   auto pair(const auto& p) const {
     const auto weight = p.weight(volume);
     const auto v = p.i(velocity) - p.j(velocity);
     const auto v_r = dot(v, p.r_ij());
     const auto jump = -v_r * p.per_r();  // u_L - u_R
-    const auto beta = min(most, max(least, (limiter / sound_speed) * jump));
+    const auto beta = min(most, max(least, steepness_ * jump));
     const auto dissipation = (weight * beta * jump) * p.r_ij();
     if constexpr (Corrected)
       return sums(weight * dot(v, p.i(matrix) * p.r_ij()), dissipation);
@@ -117,6 +120,10 @@ struct VelocityDivergenceOf : PairOperator<VelocityDivergenceOf<Corrected>> {
     compression[i] = ((Corrected ? 1.0 : gradient_scale) * density[i] * density[i] * per_mass) * divergence;
     pressure_acceleration[i] = (-gradient_scale * reference_density * sound_speed * per_mass) * dissipation;
   }
+  void begin() { steepness_ = limiter / sound_speed; }
+
+ private:
+  double steepness_ = 0;  // of beta over the jump, s/m
 };
 
 using VelocityDivergence = VelocityDivergenceOf<false>;

@@ -12,6 +12,9 @@
 // 0.07 and 0.2 of it are left; errors are those of twice the passes with C = 0.3 (standing_wave, dam_break_2d, hydrostatic_2d).
 #pragma once
 
+#include <memory>
+#include <tuple>
+
 #include "intermittent.hpp"
 
 namespace shoal::fluid {
@@ -27,11 +30,16 @@ auto upper_square(const Vec<D, R>& v) {
 
 // v'. Where neighbours do not span the space, e.g. in a spray, the gradient is damped towards zero.
 struct VelocityFluctuation : IntermittentPairOperator<VelocityFluctuation> {
+  static constexpr bool single_in_3d_only = true;
+
   In<Vector> velocity{"velocity"};
   In<Scalar> volume{"volume"};
   Out<Vector> fluctuation{"velocity_fluctuation", unit("m/s"),
                           doc("Velocity less the linear flow over the neighbourhood."), derived};
 
+  std::shared_ptr<SinglePrecision> single;
+
+  auto neighbour_fields() const { return std::tie(velocity); }
   auto pair(const auto& p) const {
     const auto w = p.j(volume) * p.W();
     const auto r = (1.0 / p.h()) * p.r_ij();
@@ -57,6 +65,7 @@ struct VelocityFluctuation : IntermittentPairOperator<VelocityFluctuation> {
 
 struct VelocityFilter : IntermittentPairOperator<VelocityFilter> {
   static constexpr bool skips_lonely = true;
+  static constexpr bool single_in_3d_only = true;
 
   In<Vector> fluctuation{"velocity_fluctuation", unit("m/s"),
                          doc("Velocity less the linear flow over the neighbourhood."), derived};
@@ -66,7 +75,9 @@ struct VelocityFilter : IntermittentPairOperator<VelocityFilter> {
 
   double strength = 0;           // C
   double reference_density = 0;  // kg/m3
+  std::shared_ptr<SinglePrecision> single;
 
+  auto neighbour_fields() const { return std::tie(fluctuation); }
   auto pair(const auto& p) const {
     const auto along = dot(p.i(fluctuation) - p.j(fluctuation), p.r_ij());
     return (p.j(volume) * p.dW_over_r() * p.per_r() * along) * p.r_ij();

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <memory>
+#include <tuple>
 
 #include "shoal/pair_operator.hpp"
 
@@ -48,8 +49,9 @@ struct ViscousForceOf : PairOperator<ViscousForceOf<Form>> {
   double gradient_scale = 1;     // 1 / slope of lattice_sums()
   double longest_step = 0.125;   // dt nu / h^2
   static constexpr double longest_step_in_the_open = Form::longest_step;
-  std::shared_ptr<FrozenGeometry> geometry;
+  std::shared_ptr<SinglePrecision> single;
 
+  auto neighbour_fields() const { return std::tie(velocity); }
   auto pair(const auto& p) const {
     return Form::exchange(p, p.weight(volume), p.i(velocity) - p.j(velocity));
   }

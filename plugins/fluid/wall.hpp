@@ -13,6 +13,9 @@
 // above i, and half of the vertical pressure gradient with them: the fluid at the wall sinks.
 #pragma once
 
+#include <memory>
+#include <tuple>
+
 #include "shoal/pair_operator.hpp"
 
 #include "gradient_matrix.hpp"
@@ -20,12 +23,16 @@
 
 namespace shoal::fluid {
 
-// The wall's normal, turned to the side where the fluid is: behind the middle of a shell it points outward.
+// 1 or -1: the side of the wall on which the fluid is, `across` being how far along the wall's normal. Behind the middle
+// of a shell the normal points outward.
+template <class R>
+R side_of(const R& across) {
+  return select(across < 0.0, R(-1.0), R(1.0));
+}
+// The wall's normal, turned to that side.
 template <class Normal, class Direction>
 auto towards(const Direction& fluid, const Normal& n) {
-  auto along = dot(n, fluid);
-  using R = decltype(along);
-  return select(along < 0.0, R(-1.0), R(1.0)) * n;
+  return side_of(dot(n, fluid)) * n;
 }
 
 // Pressure of the wall's image of a fluid particle; `to_wall` is the wall particle's position less the fluid's.
@@ -45,12 +52,13 @@ auto without_pull(const P& fluid, const W& wall, const S& distance, double touch
 template <bool Corrected>
 struct WallPressureForceOf : PairOperator<WallPressureForceOf<Corrected>> {
   static constexpr bool skips_lonely = true;
+  static constexpr bool single_in_3d_only = true;
 
   In<Scalar> pressure{"pressure", own_only};
   In<Scalar> density{"density", own_only};
   In<Vector> acceleration{"acceleration", own_only};
   MatrixIf<Corrected> matrix{"pressure_matrix", own_only, unit("1"), doc("Correction of gradients.")};
-  In<Scalar> wall_volume{"volume", neighbours_only};
+  In<Scalar> volume{"volume", neighbours_only};
   In<Vector> wall_normal{"normal", neighbours_only};
   In<Scalar> wall_distance{"signed_distance", neighbours_only};
   InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"),
@@ -59,12 +67,13 @@ struct WallPressureForceOf : PairOperator<WallPressureForceOf<Corrected>> {
   double reference_density = 0;  // kg/m3
   double gradient_scale = 1;     // 1 / slope of lattice_sums()
   double touching = -1e300;      // m
+  std::shared_ptr<SinglePrecision> single;
 
+  auto neighbour_fields() const { return std::tie(wall_normal, wall_distance); }
   auto pair(const auto& p) const {
     const auto p_w = wall_pressure(reference_density, p.i(pressure), p.i(acceleration), -p.r_ij());
     const auto distance = dot(p.j(wall_normal), p.r_ij()) + p.j(wall_distance);
-    const auto weight =
-        p.j(wall_volume) * p.dW_over_r() * without_pull(p.i(pressure), p_w, distance, touching);
+    const auto weight = p.j(volume) * p.dW_over_r() * without_pull(p.i(pressure), p_w, distance, touching);
     if constexpr (Corrected)
       return weight * (p.i(matrix) * p.r_ij());
     else
@@ -81,13 +90,14 @@ using WallPressureForce = WallPressureForceOf<false>;
 template <bool Corrected>
 struct WallVelocityDivergenceOf : PairOperator<WallVelocityDivergenceOf<Corrected>> {
   static constexpr bool skips_lonely = true;
+  static constexpr bool single_in_3d_only = true;
 
   In<Vector> velocity{"velocity", own_only};
   In<Scalar> density{"density", own_only};
   In<Vector> wall_velocity{"velocity", neighbours_only};
   In<Vector> wall_normal{"normal", neighbours_only};
   MatrixIf<Corrected> matrix{"gradient_matrix", own_only, unit("1"), doc("Correction of gradients.")};
-  In<Scalar> wall_volume{"volume", neighbours_only};
+  In<Scalar> volume{"volume", neighbours_only};
   InOut<Vector> pressure_acceleration{"pressure_acceleration", unit("m/s2"),
                                       doc("Acceleration by pressure.")};
   InOut<Scalar> compression{"compression_rate", unit("kg/m3/s"),
@@ -97,18 +107,22 @@ struct WallVelocityDivergenceOf : PairOperator<WallVelocityDivergenceOf<Correcte
   double limiter = 3.0;
   double most = 1.0;          // B of riemann.hpp
   double gradient_scale = 1;  // 1 / slope of lattice_sums()
+  std::shared_ptr<SinglePrecision> single;
 
+  auto neighbour_fields() const { return std::tie(wall_normal, wall_velocity); }
   auto pair(const auto& p) const {
-    const auto weight = p.j(wall_volume) * p.dW_over_r();
-    const auto n = towards(p.r_ij(), p.j(wall_normal));
-    const auto v_n = 2.0 * dot(p.i(velocity) - p.j(wall_velocity), n);  // (v_i - v_w').n
+    const auto weight = p.j(volume) * p.dW_over_r();
+    const auto normal = p.j(wall_normal);
+    const auto across = dot(normal, p.r_ij());
+    const auto side = side_of(across);                                              // n = side * normal
+    const auto v_n = 2.0 * side * dot(p.i(velocity) - p.j(wall_velocity), normal);  // (v_i - v_w').n
     const auto approach = max(0.0, -v_n);
     const auto beta = min(most, (limiter / sound_speed) * approach);
-    const auto dissipation = (weight * p.r() * beta * approach) * n;
+    const auto dissipation = (weight * p.r() * beta * approach * side) * normal;
     if constexpr (Corrected)
-      return sums(weight * v_n * dot(n, p.i(matrix) * p.r_ij()), dissipation);
+      return sums(weight * v_n * side * dot(normal, p.i(matrix) * p.r_ij()), dissipation);
     else
-      return sums(weight * v_n * dot(n, p.r_ij()), dissipation);
+      return sums(weight * v_n * abs(across), dissipation);
   }
   void particle(auto i, auto divergence, auto dissipation) const {
     compression[i] += (Corrected ? 1.0 : gradient_scale) * density[i] * divergence;

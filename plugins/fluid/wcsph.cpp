@@ -71,11 +71,18 @@ struct FluidBody {
   EquationOfState equation_of_state;
   double density, viscosity, sound_speed, max_speed;
   LatticeSums lattice = lattice_sums(b.dimensions(), b.target(body));
-  // Of the acoustic steps in an advection step. In 3D each pass finds it anew (pair_operator.hpp), and with corrected
-  // gradients, for the sake of accuracy: with edac and L/50 the energy of Taylor-Green vortices is 0.8 % off with frozen
-  // geometry, 0.2 % without.
-  std::shared_ptr<FrozenGeometry> geometry =
-      b.dimensions() == 2 && !physics.gradient_correction ? std::make_shared<FrozenGeometry>() : nullptr;
+  // Of the sums over pairs in acoustic steps and, in 3D, of the filter. With corrected gradients they are in double
+  // precision, since in 2D geometry would be frozen: with edac and L/50 the energy of Taylor-Green vortices is 0.8 % off
+  // with it, 0.2 % without.
+  std::shared_ptr<SinglePrecision> single =
+      physics.precision.value() == "single" && !physics.gradient_correction
+          ? std::make_shared<SinglePrecision>()
+          : nullptr;
+
+  // Of walls, whose records last as long as the walls rest.
+  std::shared_ptr<SinglePrecision> single_of_its_own() const {
+    return single ? std::make_shared<SinglePrecision>() : nullptr;
+  }
 
   bool has_walls() const { return !walls.empty(); }
   Target itself() const { return b.target(body); }
@@ -116,6 +123,7 @@ struct FluidBody {
     const auto setup = [&](auto& op) {
       op.reference_density = density;
       op.per_lattice_sum = 1.0 / lattice.w;
+      op.single = single;
       op.free_surface = physics.free_surface;
       op.interval = interval;
       const double share = physics.free_surface ? physics.summation_relaxation.value() : 1.0;
@@ -132,9 +140,9 @@ struct FluidBody {
   }
 
   void attach_geometry() const {
-    if (!geometry) return;
+    if (!single || b.dimensions() == 3) return;
     b.attach<FreezeGeometry>("fluid.pair_geometry", at_geometry, itself(),
-                             [&](auto& op) { op.geometry = geometry; });
+                             [&](auto& op) { op.single = single; });
   }
 
   void attach_gradients() const {
@@ -148,10 +156,13 @@ struct FluidBody {
     const double strength = physics.velocity_filter.value_or(physics.free_surface ? 0.4 : 0.0);
     if (strength == 0.0) return;
     constexpr std::uint64_t interval = 2;
-    b.attach<VelocityFluctuation>("fluid.velocity_fluctuation", at_filter, itself(),
-                                  [&](auto& op) { op.interval = interval; });
+    b.attach<VelocityFluctuation>("fluid.velocity_fluctuation", at_filter, itself(), [&](auto& op) {
+      op.interval = interval;
+      op.single = single;
+    });
     b.attach<VelocityFilter>("fluid.velocity_filter", at_filter, itself(), [&](auto& op) {
       op.interval = interval;
+      op.single = single;
       op.strength = strength;
       op.reference_density = density;
     });
@@ -177,7 +188,7 @@ struct FluidBody {
       op.viscosity = viscosity;
       op.gradient_scale = 1.0 / lattice.slope;
       if constexpr (requires { op.reference_density; }) op.reference_density = density;
-      if constexpr (requires { op.geometry; }) op.geometry = geometry;
+      if constexpr (requires { op.single; }) op.single = single;
       if constexpr (requires { op.longest_step; })
         op.longest_step = no_slip_walls.empty() ? Force::longest_step_in_the_open : 0.125;
     };
@@ -193,7 +204,7 @@ struct FluidBody {
       op.reference_density = density;
       op.sound_speed = sound_speed;
       op.gradient_scale = 1.0 / lattice.slope;
-      op.geometry = geometry;
+      op.single = single;
       if constexpr (requires { op.dissipation; }) op.dissipation = largest_dissipation();
       if constexpr (requires { op.diffusivity; }) {
         const double ch = sound_speed * itself().smoothing_length;
@@ -238,6 +249,7 @@ struct FluidBody {
                                                [&](auto& op) {
                                                  op.reference_density = density;
                                                  op.gradient_scale = 1.0 / lattice.slope;
+                                                 op.single = single_of_its_own();
                                                  if (physics.free_surface)
                                                    op.touching = 0.25 * itself().spacing;
                                                });
@@ -253,19 +265,22 @@ struct FluidBody {
         riemann(op);
         op.reference_density = density;
         op.least = physics.least_dissipation;
-        op.geometry = geometry;
+        op.single = single;
       });
     else
       b.attach<ViscousDivergence<Corrected>>("fluid.divergence", at_continuity, itself(), [&](auto& op) {
         op.alpha = physics.artificial_viscosity;
-        op.geometry = geometry;
+        op.single = single;
         op.sound_speed = sound_speed;
         op.reference_density = density;
         op.gradient_scale = 1.0 / lattice.slope;
       });
     if (has_walls())
       b.attach<WallVelocityDivergenceOf<Corrected>>("fluid.divergence.walls", at_continuity, and_walls(),
-                                                    riemann);
+                                                    [&](auto& op) {
+                                                      riemann(op);
+                                                      op.single = single_of_its_own();
+                                                    });
     b.attach<DensityCorrector>("fluid.correct_density", at_continuity, itself());
   }
 

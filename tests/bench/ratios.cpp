@@ -71,7 +71,7 @@ class Plugged {
   Plugged& operator=(const Plugged&) = delete;
   ~Plugged() { op_.destroy(op_.self); }
   void run() const {
-    constexpr std::uint64_t chunk_size = 256;
+    constexpr std::uint64_t chunk_size = 128;
     check(op_.begin(op_.self, &step_));
     for (std::uint64_t begin = 0; begin < scene_.size(); begin += chunk_size) {
       const shoal_chunk chunk{sizeof(shoal_chunk), static_cast<std::uint32_t>(begin / chunk_size), begin,

@@ -44,7 +44,7 @@ class Scene {
     std::vector<shoal_field> views;
     for (const shoal_access& access : accesses) {
       const std::uint32_t components = access.rank == SHOAL_SCALAR ? 1 : 3;
-      views.push_back({sizeof(shoal_field), components, field(access.field, components), n_, n_});
+      views.push_back({sizeof(shoal_field), components, field(access.field, components), n_, n_, nullptr});
     }
     const shoal_neighbours lists{sizeof(shoal_neighbours), 0,  list_.offsets(), list_.counts(),
                                  list_.indices(),          n_, cutoff,          1};

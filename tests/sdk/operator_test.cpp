@@ -292,7 +292,8 @@ struct Described {
     attached->op.set_dimensions(body.dimensions());
     c = impl::describe(std::move(attached), 0);
     for (std::uint32_t a = 0; a < c.n_accesses; ++a)
-      views_.push_back({sizeof(shoal_field), 1, body.data(c.accesses[a].field, 1), body.size(), body.size()});
+      views_.push_back(
+          {sizeof(shoal_field), 1, body.data(c.accesses[a].field, 1), body.size(), body.size(), nullptr});
     const shoal_binding binding{sizeof(shoal_binding), body.dimensions(), body.size(),
                                 views_.data(),         nullptr,           nullptr};
     CHECK(c.bind(c.self, &binding) == SHOAL_OK);

@@ -213,6 +213,9 @@ typedef struct shoal_field {
   void* data;  // components interleaved
   uint64_t n_owned;
   uint64_t n_total;  // owned and halo
+  // Since 1.3
+  const uint64_t*
+      changes;  // a number that grows whenever values change, whoever changes them; NULL: not counted
 } shoal_field;
 
 // Neighbours of the owned particles of a body among the particles (owned and halo) of another, or of itself.
@@ -333,7 +336,8 @@ typedef struct shoal_operator {
   shoal_status (*load)(void* self, const shoal_stream* stream);  // [main]
   // Since 1.1
   uint32_t bytes_per_pair;  // that the operator keeps beside its neighbour lists, for `shoal plan`
-  uint32_t reserved;
+  uint32_t
+      bytes_per_particle;  // of its neighbours' bodies, apart from fields and what it keeps of pairs (since 1.3)
   // Since 1.2
   // Called whenever neighbours are about to be renewed in a step, in the order of attachment: fills in which particles
   // leave the operator's body and which join it. Neighbour lists are those of the last step. `step` is that of the loop
@@ -346,6 +350,10 @@ typedef struct shoal_operator {
   // What the user should know of the run so far, in one line: writes at most `size` bytes with the final 0 to `text`, an
   // empty one if there is nothing to say. Shown at the end of a run and kept in its summary; NULL: never anything.
   void (*remark)(void* self, char* text, uint64_t size);  // [main]
+  // Since 1.3
+  // Called after `begin` with all chunks, before the first of them is run: for what an operator derives of its fields
+  // before it reads it of neighbours.                                                                // [worker]
+  shoal_status (*prepare)(void* self, const shoal_step* step, const shoal_chunk* chunk);
 } shoal_operator;
 
 // ---------------------------------------------------------------------------------------------------------------

@@ -135,6 +135,7 @@ class FieldMember {
 
   void* own_ = nullptr;
   std::array<const void*, max_neighbour_bodies> of_neighbours_{};
+  std::array<const std::uint64_t*, max_neighbour_bodies> changes_{};  // of the neighbours' values
 
  private:
   friend class shoal::OperatorBase;
@@ -171,6 +172,8 @@ class Field : public impl::FieldMember {
   const double* of_neighbours(std::size_t relation) const {
     return static_cast<const double*>(of_neighbours_[relation]);
   }
+  // A number that grows whenever these change; nullptr where nobody counts.
+  const std::uint64_t* changes_of_neighbours(std::size_t relation) const { return changes_[relation]; }
 
  protected:
   Field(const char* field, std::uint32_t mode)
@@ -305,12 +308,20 @@ class OperatorBase : public Parameterised {
     const std::size_t n = fields_.size();
     for (std::size_t a = 0; a < n; ++a) {
       fields_[a]->own_ = SHOAL_AT(shoal_field, binding.own, a)->data;
-      for (std::size_t k = 0; k < target_.neighbours.size(); ++k)
-        fields_[a]->of_neighbours_[k] = SHOAL_AT(shoal_field, binding.of_neighbours, k * n + a)->data;
+      for (std::size_t k = 0; k < target_.neighbours.size(); ++k) {
+        const shoal_field field = copy_of(*SHOAL_AT(shoal_field, binding.of_neighbours, k * n + a));
+        fields_[a]->of_neighbours_[k] = field.data;
+        fields_[a]->changes_[k] = field.changes;
+      }
     }
     neighbours_.clear();
-    for (std::size_t k = 0; k < target_.neighbours.size(); ++k)
+    n_of_neighbours_.assign(target_.neighbours.size(), 0);
+    for (std::size_t k = 0; k < target_.neighbours.size(); ++k) {
       neighbours_.push_back(copy_of(*SHOAL_AT(shoal_neighbours, binding.neighbours, k)));
+      for (std::size_t a = 0; a < n; ++a)
+        n_of_neighbours_[k] =
+            std::max(n_of_neighbours_[k], SHOAL_AT(shoal_field, binding.of_neighbours, k * n + a)->n_total);
+    }
   }
   void set_step(const shoal_step& step) { step_ = copy_of(step); }
   void set_results(const double* results) {
@@ -319,6 +330,8 @@ class OperatorBase : public Parameterised {
   const shoal_neighbours& neighbours(std::size_t relation) const { return neighbours_[relation]; }
   const std::vector<shoal_neighbours>& lists() const { return neighbours_; }
   std::size_t n_relations() const { return target_.neighbours.size(); }
+  // Particles and images of the neighbours' body.
+  std::uint64_t n_of_neighbours(std::size_t relation) const { return n_of_neighbours_[relation]; }
 
   std::vector<shoal_access> accesses() const {
     std::vector<shoal_access> list;
@@ -347,6 +360,7 @@ class OperatorBase : public Parameterised {
   shoal_step step_{};
   std::vector<impl::FieldMember*> fields_;
   std::vector<shoal_neighbours> neighbours_;
+  std::vector<std::uint64_t> n_of_neighbours_;
   std::vector<std::uint32_t> reductions_;
   std::vector<double*> results_;
 };
@@ -469,6 +483,7 @@ shoal_operator describe(std::unique_ptr<AttachedOperator<Op>> attached, std::uin
   c.begin = [](void* self, const shoal_step* step) {
     return guarded([&] {
       op_of<Op>(self).set_step(*step);
+      if constexpr (requires(Op & op) { op.before_begin(); }) op_of<Op>(self).before_begin();
       if constexpr (requires(Op & op) { op.begin(); }) op_of<Op>(self).begin();
     });
   };
@@ -519,6 +534,16 @@ shoal_operator describe(std::unique_ptr<AttachedOperator<Op>> attached, std::uin
       guarded([&] { std::snprintf(text, size, "%s", std::string(op_of<Op>(self).remark()).c_str()); });
     };
   if constexpr (requires(Op & op) { op.bytes_per_pair(); }) c.bytes_per_pair = attached->op.bytes_per_pair();
+  if constexpr (requires(Op & op) { op.bytes_per_particle(); })
+    c.bytes_per_particle = attached->op.bytes_per_particle();
+  if constexpr (requires(const Op& op, const shoal_chunk& chunk) { op.template prepare_chunk<2>(chunk); })
+    if (attached->op.prepares())
+      c.prepare = [](void* self, const shoal_step* step, const shoal_chunk* chunk) {
+        return guarded([&] {
+          const Op& op = op_of<Op>(self);
+          step->dimensions == 2 ? op.template prepare_chunk<2>(*chunk) : op.template prepare_chunk<3>(*chunk);
+        });
+      };
   c.self = attached.release();
   return c;
 }

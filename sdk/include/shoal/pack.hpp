@@ -115,8 +115,6 @@ struct Pack {
   friend Pack sqrt(Pack a) { return from_raw(simd::sqrt(a.v)); }
   /// 1 / sqrt(a) for positive normal a, within 2 units in the last place.
   friend Pack inverse_sqrt(Pack a) { return from_raw(simd::inverse_sqrt(a.v)); }
-  /// The same to single precision at least (26 bits), for numbers that come from there.
-  friend Pack inverse_sqrt_single(Pack a) { return from_raw(simd::inverse_sqrt_single(a.v)); }
   /// 1 / a for normal a, within 2 units in the last place and at a third of a division's cost.
   friend Pack reciprocal(Pack a) { return from_raw(simd::reciprocal(a.v)); }
 

@@ -3,7 +3,7 @@
 //
 // What the code of a pair asks: geometry, and fields of the particle i and its neighbours j. R = double is one pair; in a
 // Pack the lanes hold one particle and `lanes` of its neighbours (Own = Particle), or `lanes` particles with a neighbour
-// each (Own = ParticlePack).
+// each (Own = ParticlePack). SinglePair and FrozenPair are those of operators in single precision (single_precision.hpp).
 #pragma once
 
 #include <array>
@@ -11,8 +11,10 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "shoal/detail/single_records.hpp"
 #include "shoal/operator.hpp"
 #include "shoal/pack.hpp"
+#include "shoal/single_pack.hpp"
 #include "shoal/smoothing_kernel.hpp"
 #include "shoal/vec.hpp"
 
@@ -37,6 +39,59 @@ struct ParticlePack {
   }
 };
 
+// As many consecutive particles as a single pack has lanes: those from low and from high on.
+template <int D>
+struct SingleParticlePack {
+  static constexpr int dimensions = D;
+  std::uint64_t low, high;
+
+  template <int N>
+  void read(const double* field, SinglePack* out) const {
+    Pack first[N], second[N];
+    load_tuple<N>(field + low * N, first);
+    load_tuple<N>(field + high * N, second);
+    for (int k = 0; k < N; ++k) out[k] = SinglePack::join(first[k], second[k]);
+  }
+};
+
+namespace pair_loop {
+
+// What a field of T holds, of numbers that `numbers` writes.
+template <class T, int D, class R, class F>
+auto element(const F& numbers) {
+  if constexpr (std::is_same_v<T, Scalar>) {
+    R value;
+    numbers(std::integral_constant<int, 1>{}, &value);
+    return value;
+  } else if constexpr (std::is_same_v<T, Vector>) {
+    Vec<D, R> value;
+    numbers(std::integral_constant<int, D>{}, value.e);
+    return value;
+  } else if constexpr (std::is_same_v<T, Matrix>) {
+    Mat<D, R> value;
+    numbers(std::integral_constant<int, D * D>{}, value.e);
+    return value;
+  } else {
+    constexpr int n = field_numbers<T, D>;
+    std::array<R, n> value;
+    numbers(std::integral_constant<int, n>{}, value.data());
+    return value;
+  }
+}
+
+// The own values of the particle, or of those in the lanes.
+template <class R, class T, bool Writable, class Own>
+auto own_value(const Field<T, Writable>& field, const Own& i) {
+  constexpr int D = Own::dimensions;
+  if constexpr (std::is_same_v<Own, Particle<D>>)
+    return field[i];
+  else
+    return element<T, D, R>(
+        [&]<int N>(std::integral_constant<int, N>, R* out) { i.template read<N>(field.data(), out); });
+}
+
+}  // namespace pair_loop
+
 // The fields of a pair.
 template <int D, class R, class Own>
 class PairFields {
@@ -50,57 +105,31 @@ class PairFields {
   // The particle's own value of a field.
   template <class T, bool Writable>
   auto i(const Field<T, Writable>& field) const {
-    if constexpr (std::is_same_v<Own, Particle<D>>)
-      return field[i_];
-    else
-      return read<T>(
-          [&]<int N>(std::integral_constant<int, N>, R* out) { i_.template read<N>(field.data(), out); });
+    return pair_loop::own_value<R>(field, i_);
   }
   // The neighbours' values of a field.
   template <class T, bool Writable>
   auto j(const Field<T, Writable>& field) const {
     const double* values = field.of_neighbours(relation_);
-    return read<T>([&]<int N>(std::integral_constant<int, N>, R* out) { gather_tuple<N>(values, j_, out); });
+    return pair_loop::element<T, D, R>(
+        [&]<int N>(std::integral_constant<int, N>, R* out) { gather_tuple<N>(values, j_, out); });
   }
 
  private:
-  // What a field holds, of numbers that `numbers` writes.
-  template <class T, class F>
-  static auto read(const F& numbers) {
-    if constexpr (std::is_same_v<T, Scalar>) {
-      R value;
-      numbers(std::integral_constant<int, 1>{}, &value);
-      return value;
-    } else if constexpr (std::is_same_v<T, Vector>) {
-      Vec<D, R> value;
-      numbers(std::integral_constant<int, D>{}, value.e);
-      return value;
-    } else if constexpr (std::is_same_v<T, Matrix>) {
-      Mat<D, R> value;
-      numbers(std::integral_constant<int, D * D>{}, value.e);
-      return value;
-    } else {
-      constexpr auto n = D == 2 ? impl::array_size<T>.in_2d : impl::array_size<T>.in_3d;
-      std::array<R, n> value;
-      numbers(std::integral_constant<int, static_cast<int>(n)>{}, value.data());
-      return value;
-    }
-  }
-
   std::size_t relation_;
   Own i_;
   Indices j_;
 };
 
-// The distance of a pair; Single: of components in single precision.
-template <int D, class R, bool Single = false>
+// The distance of a pair.
+template <int D, class R>
 class PairVector {
  public:
   explicit PairVector(const Vec<D, R>& r_ij) : r_ij_(r_ij) {
     // Coincident particles have no direction: the limit makes e = 0 there, not NaN.
-    const R squared = max(R(1e-200), squared_norm(r_ij_));
+    const R squared = max(R(std::is_same_v<R, SinglePack> ? 1e-36 : 1e-200), squared_norm(r_ij_));
     if constexpr (simd::fast_inverse_sqrt && !std::is_same_v<R, double>) {
-      per_r_ = Single ? inverse_sqrt_single(squared) : inverse_sqrt(squared);
+      per_r_ = inverse_sqrt(squared);
       r_ = squared * per_r_;
     } else {
       r_ = sqrt(squared);
@@ -151,32 +180,136 @@ class Pair : public PairFields<D, R, Own>, public PairVector<D, R> {
   const Kernel& kernel_;
 };
 
-// A pair of frozen geometry (shoal/freeze_geometry.hpp).
-template <int D, class Own>
-class FrozenPair : public PairFields<D, Pack, Own>, public PairVector<D, Pack, true> {
+// The fields of a pair in single precision; View is a RecordView. Those that the operator lists are rounded, of the
+// particle as of its neighbours.
+template <int D, class Own, class View>
+class SinglePairFields {
  public:
-  FrozenPair(double h, std::size_t relation, Own i, const std::uint32_t* neighbours, const float* numbers)
-      : PairFields<D, Pack, Own>(relation, i, IndexPack::load(neighbours)),
-        PairVector<D, Pack, true>(distance(numbers)),
+  static constexpr int dimensions = D;
+  using RealType = SinglePack;
+  using OwnRecord = pair_loop::OwnRecord<View, Own>;
+
+  SinglePairFields(const View& view, const OwnRecord& own, SingleIndexPack j)
+      : view_(view), own_(own), j_(j) {}
+
+  template <class T, bool Writable>
+  auto i(const Field<T, Writable>& field) const {
+    return pair_loop::element<T, D, SinglePack>([&]<int N>(std::integral_constant<int, N>, SinglePack* out) {
+      const bool listed =
+          view_.template find<N>(field, [&](auto place) { std::copy_n(own_.values + place, N, out); });
+      if (!listed) pair_loop::read_own<N>(field, own_.i, out);
+    });
+  }
+  template <class T, bool Writable>
+  auto j(const Field<T, Writable>& field) const {
+    return pair_loop::element<T, D, SinglePack>([&]<int N>(std::integral_constant<int, N>, SinglePack* out) {
+      view_.template gather<N>(field, j_, out);
+    });
+  }
+
+ private:
+  const View& view_;
+  const OwnRecord& own_;
+  SingleIndexPack j_;
+};
+
+// A particle and `single_lanes` of its neighbours. The kernel is that of h = 1, so that numbers of very small or large
+// particles stay within the range of single precision.
+template <int D, class Kernel, class View>
+class SinglePair : public SinglePairFields<D, Particle<D>, View>, public PairVector<D, SinglePack> {
+ public:
+  // The particle's own record, with its geometry.
+  struct Own : pair_loop::OwnRecord<View, Particle<D>> {
+    SinglePack geometry[4];
+    Own(const View& view, Particle<D> i) : pair_loop::OwnRecord<View, Particle<D>>(view, i) {}
+  };
+  struct Scales {
+    double unit;                         // of positions, m
+    double h;                            // m
+    const Field<Scalar, false>* volume;  // nullptr: not asked for
+  };
+
+  SinglePair(const Kernel& unit_kernel, const View& view, const Scales& scales, const Own& own,
+             SingleIndexPack j)
+      : SinglePair(unit_kernel, view, scales, own, j, Record(view, j)) {}
+
+  template <class T, bool Writable>
+  auto j(const Field<T, Writable>& field) const {
+    if constexpr (std::is_same_v<T, Scalar> && !Writable)
+      if (&field == scales_.volume) return (1.0 / per_volume()) * volume_;
+    return SinglePairFields<D, Particle<D>, View>::j(field);
+  }
+
+  SinglePack W() const { return per_volume() * unit_kernel_.w(q()); }
+  SinglePack dW() const { return (per_volume() / scales_.h) * unit_kernel_.dw(q()); }
+  SinglePack dW_over_r() const {
+    return (per_volume() / (scales_.h * scales_.h)) * unit_kernel_.dw_over_r(q());
+  }
+  Vec<D, SinglePack> grad_W() const { return dW_over_r() * this->r_ij(); }
+  double h() const { return scales_.h; }
+  template <class Volume>
+  SinglePack weight(const Volume&) const {
+    const double scale = D == 2 ? 1.0 : scales_.h;  // h^2D / h^(D + 2)
+    return (own_volume_ * volume_) * (scale * unit_kernel_.dw_over_r(q()));
+  }
+
+ private:
+  struct Record {
+    SinglePack geometry[4];
+    Record(const View& view, SingleIndexPack j) { view.gather_geometry(j, geometry); }
+  };
+  SinglePair(const Kernel& unit_kernel, const View& view, const Scales& scales, const Own& own,
+             SingleIndexPack j, const Record& record)
+      : SinglePairFields<D, Particle<D>, View>(view, own, j),
+        PairVector<D, SinglePack>(distance(scales.unit, own.geometry, record.geometry)),
+        unit_kernel_(unit_kernel),
+        scales_(scales),
+        own_volume_(own.geometry[3]),
+        volume_(record.geometry[3]) {}
+
+  static Vec<D, SinglePack> distance(double unit, const SinglePack* x_i, const SinglePack* x_j) {
+    Vec<D, SinglePack> r_ij;
+    for (int a = 0; a < D; ++a)
+      r_ij[a] = unit * SinglePack::from_raw(simd::single::difference(x_i[a].v, x_j[a].v));
+    return r_ij;
+  }
+  SinglePack q() const { return (1.0 / scales_.h) * this->r(); }
+  double per_volume() const { return detail::per_volume<D>(scales_.h); }
+
+  const Kernel& unit_kernel_;
+  const Scales& scales_;
+  SinglePack own_volume_, volume_;  // over h^D
+};
+
+// Pairs of frozen geometry, of `single_lanes` particles with a neighbour each.
+template <int D, class View>
+class FrozenPair : public SinglePairFields<D, SingleParticlePack<D>, View>, public PairVector<D, SinglePack> {
+ public:
+  using Own = pair_loop::OwnRecord<View, SingleParticlePack<D>>;
+
+  FrozenPair(double h, const View& view, const Own& own, const std::uint32_t* neighbours,
+             const float* numbers)
+      : SinglePairFields<D, SingleParticlePack<D>, View>(view, own, {neighbours, neighbours + lanes}),
+        PairVector<D, SinglePack>(distance(numbers)),
         h_(h),
-        weight_(Pack::load(numbers)) {}
+        weight_(SinglePack::load(numbers)) {}
 
   double h() const { return h_; }
   // V_i V_j (dW/dr)/r as it was when the geometry was frozen.
   template <class Volume>
-  Pack weight(const Volume&) const {
+  SinglePack weight(const Volume&) const {
     return weight_;
   }
 
  private:
-  static Vec<D, Pack> distance(const float* numbers) {
-    Vec<D, Pack> r_ij;
-    for (int a = 0; a < D; ++a) r_ij[a] = Pack::load(numbers + (1 + a) * lanes);
+  static Vec<D, SinglePack> distance(const float* numbers) {
+    Vec<D, SinglePack> r_ij;
+    for (int a = 0; a < D; ++a) r_ij[a] = SinglePack::load(numbers + (1 + a) * single_lanes);
     return r_ij;
   }
 
   double h_;
-  Pack weight_;
+  SinglePack weight_;
 };
 
 }  // namespace SHOAL_ISA_NAMESPACE

@@ -29,10 +29,11 @@
 // ties the operator to one smoothing kernel (with the target's smoothing length) and compiles it for that alone.
 //     static constexpr const char* pair_geometry = "reference_position";
 // takes distances from another field than `position`.
-//     std::shared_ptr<FrozenGeometry> geometry;
-// for operators of sub-steps, whose `pair` asks p.weight(volume), p.r_ij() and p.r(), but not W() and its like: in 2D they
-// read geometry that was frozen for the step (freeze_geometry.hpp), in some 60 % of the time. Without one they find it
-// anew, and so they do in 3D, where it would take 1.4 kB a particle and gains nothing once that leaves the caches.
+//     std::shared_ptr<SinglePrecision> single;
+// runs the operator in single precision where it is set, in some 60 % of the time (single_precision.hpp): `pair` may ask
+// weight(volume), r(), r_ij() and their like, in 3D W() and its like too, and fields. With
+//     static constexpr bool single_in_3d_only = true;
+// it does so in three dimensions only, for pairs that ask W() and its like, or must not see frozen geometry.
 //
 // Where pairs seldom change (static bodies, the reference configuration) what depends on them alone is worth keeping:
 //     auto store(const auto& p) const { return p.j(volume) * p.grad_W(); }
@@ -49,12 +50,12 @@
 #include <utility>
 #include <vector>
 
-#include "shoal/detail/frozen_geometry.hpp"
 #include "shoal/detail/kept_pairs.hpp"
 #include "shoal/detail/row_group.hpp"
 #include "shoal/operator.hpp"
 #include "shoal/pack.hpp"
 #include "shoal/pair.hpp"
+#include "shoal/single_precision.hpp"
 #include "shoal/smoothing_kernel.hpp"
 #include "shoal/vec.hpp"
 
@@ -109,7 +110,7 @@ class Lanes {
   static auto read(const double* place) {
     return LaneReader<V>::get(place);
   }
-  alignas(64) double values_[numbers<T> * lanes];
+  alignas(64) double values_[numbers<T> * RealTraits<typename Numbers<T>::Number>::lanes];
 };
 
 template <class Op, int D, class Sum>
@@ -131,8 +132,8 @@ class PairOperator : public OperatorBase {
   // Packs of neighbours; what a run uses.
   template <int D>
   void run_chunk(const shoal_chunk& chunk) const {
-    if constexpr (D == 2 && reads_frozen())
-      if (self().geometry) return frozen_columns<D>(*self().geometry, chunk);
+    if constexpr (may_be_single<D>())
+      if (self().single) return in_single<D>(chunk);
     with_own_kernel<D>([&](const auto& kernel) {
       if constexpr (side_by_side<D>())
         columns<D>(kernel, chunk);
@@ -146,6 +147,36 @@ class PairOperator : public OperatorBase {
     with_own_kernel<D>([&](const auto& kernel) { rows<D, double>(kernel, chunk); });
   }
 
+  // [main] Looks whether records of neighbours must be made anew; before `begin` of the author.
+  void before_begin() {
+    if constexpr (may_be_single<3>()) {
+      stale_.assign(n_relations(), 0);
+      with_single([&](SinglePrecision& single) {
+        for (std::size_t k = 0; k < n_relations(); ++k)
+          stale_[k] = single.records.begin(k, this, position_, volume_field(),
+                                           pair_loop::neighbour_fields(self()), n_of_neighbours(k));
+      });
+    }
+  }
+  // Whether there are such records.
+  bool prepares() const {
+    bool is_single = false;
+    with_single([&](SinglePrecision&) { is_single = true; });
+    return is_single;
+  }
+  // Makes those of a chunk's share of the neighbours.
+  template <int D>
+  void prepare_chunk(const shoal_chunk& chunk) const {
+    if constexpr (may_be_single<D>())
+      for (std::size_t k = 0; k < n_relations(); ++k) {
+        if (!stale_[k]) continue;
+        const auto share = [&](std::uint64_t i) { return i * n_of_neighbours(k) / n_particles(); };
+        self().single->records.template write<D>(k, pair_loop::neighbour_fields(self()), position_,
+                                                 volume_field(), position_unit(), smoothing_length(),
+                                                 share(chunk.begin), share(chunk.end));
+      }
+  }
+
   // W(0), a particle's own part of a sum of W.
   double self_W() const {
     double w = 0;
@@ -157,10 +188,23 @@ class PairOperator : public OperatorBase {
   void bind(const shoal_binding& binding) {
     OperatorBase::bind(binding);
     if constexpr (requires { Derived::skips_lonely; }) find_rows_with_neighbours();
+    with_single([&](SinglePrecision& single) {
+      for (std::size_t k = 0; k < n_relations(); ++k)
+        single.records.make_room(k, n_of_neighbours(k), record_size(), dimensions());
+    });
     if (!keeps_pairs()) return;
     kept_.resize(n_relations());
     for (std::size_t k = 0; k < n_relations(); ++k)
       kept_[k].follow(neighbours(k), dimensions() == 2 ? kept_numbers<2>() : kept_numbers<3>());
+  }
+  // Bytes of a neighbour's records, where they are more than other operators that share them have counted.
+  std::uint32_t bytes_per_particle() const {
+    std::uint32_t bytes = 0;
+    with_single([&](SinglePrecision& single) {
+      bytes =
+          single.records.count(4 * static_cast<std::uint32_t>((dimensions() == 3 ? 4 : 0) + record_size()));
+    });
+    return bytes;
   }
   // Bytes that the operator keeps for each pair, in the case's dimensions.
   std::uint32_t bytes_per_pair() const {
@@ -187,8 +231,31 @@ class PairOperator : public OperatorBase {
       return "position";
   }
 
-  static constexpr bool reads_frozen() {
-    return requires(const Derived& op) { op.geometry->first_group(0); };
+  template <int D>
+  static constexpr bool may_be_single() {
+    return (D == 3 || !requires { Derived::single_in_3d_only; }) && requires(const Derived& op) {
+      op.single->records;
+    };
+  }
+  // Calls f with what the operator shares, if it runs in single precision.
+  template <class F>
+  void with_single([[maybe_unused]] const F& f) const {
+    if constexpr (may_be_single<3>())
+      if (self().single && (may_be_single<2>() || dimensions() == 3)) f(*self().single);
+  }
+  // The member `volume` if it is read, else nullptr.
+  const Field<Scalar, false>* volume_field() const {
+    if constexpr (requires(const Derived& op) { static_cast<const Field<Scalar, false>&>(op.volume); })
+      return &self().volume;
+    else
+      return nullptr;
+  }
+  double position_unit() const { return pair_loop::position_unit(target().cutoff); }
+  // Floats of a neighbour, apart from its geometry.
+  int record_size() const {
+    using Fields = decltype(pair_loop::neighbour_fields(self()));
+    return dimensions() == 2 ? pair_loop::LayoutOf<Fields, 2>::type::size
+                             : pair_loop::LayoutOf<Fields, 3>::type::size;
   }
 
   template <class P>
@@ -251,6 +318,12 @@ class PairOperator : public OperatorBase {
       for (std::size_t k = 0; k < n_relations(); ++k) add_row<R>(kernel, k, i, sum);
       pair_loop::finish_particle(self(), i, sum);
     };
+    for_rows(chunk, one);
+  }
+
+  // Calls one(i) for the particles of a chunk, but for lonely ones if the operator skips them.
+  template <class One>
+  void for_rows(const shoal_chunk& chunk, const One& one) const {
     if constexpr (requires { Derived::skips_lonely; }) {
       const auto end = rows_with_neighbours_.end();
       for (auto row = std::lower_bound(rows_with_neighbours_.begin(), end, chunk.begin);
@@ -301,27 +374,80 @@ class PairOperator : public OperatorBase {
     }
   }
 
-  // The same with what FreezeGeometry has written.
   template <int D>
-  [[gnu::noinline, gnu::flatten]] void frozen_columns(FrozenGeometry& geometry,
-                                                      const shoal_chunk& chunk) const {
-    using Own = ParticlePack<D, true>;
-    using P = FrozenPair<D, Own>;
+  void in_single(const shoal_chunk& chunk) const {
+    if constexpr (D == 2)
+      frozen_columns<D>(chunk);
+    else
+      with_kernel<D>(target().smoothing_kernel, 1.0,
+                     [&](const auto& unit_kernel) { single_rows<D>(unit_kernel, chunk); });
+  }
+
+  // Rows one after the other, in single precision.
+  template <int D, class Kernel>
+  [[gnu::noinline, gnu::flatten]] void single_rows(const Kernel& unit_kernel,
+                                                   const shoal_chunk& chunk) const {
+    const auto fields = pair_loop::neighbour_fields(self());
+    using View = pair_loop::RecordView<D, std::remove_const_t<decltype(fields)>>;
+    using P = SinglePair<D, Kernel, View>;
+    using Result = decltype(self().pair(std::declval<const P&>()));
+    const SingleRecords& records = self().single->records;
+    const typename P::Scales scales{position_unit(), smoothing_length(), volume_field()};
+    const double per_volume = detail::per_volume<D>(scales.h), per_unit = 1.0 / scales.unit;
+    for_rows(chunk, [&](std::uint64_t index) {
+      const Particle<D> particle{index, chunk.partial};
+      typename P::Own i(records.template view<D>(0, fields), particle);
+      for (int a = 0; a < D; ++a)
+        i.geometry[a] = SinglePack::from_raw(
+            simd::single::broadcast(pair_loop::whole_number(position_[particle][a], per_unit)));
+      // Where volumes are read of neighbours only (walls), or not at all, nobody asks for weights of both.
+      const bool known = scales.volume != nullptr && scales.volume->data() != nullptr;
+      i.geometry[3] = known ? (*scales.volume)[particle] * per_volume : 0.0;
+      Result sum{};
+      for (std::size_t k = 0; k < n_relations(); ++k) {
+        const View view = records.template view<D>(k, fields);
+        const shoal_neighbours& list = neighbours(k);
+        const std::uint32_t n = list.counts[index];
+        const std::uint32_t* row = list.indices + list.offsets[index];
+        // Rows are padded for a pack, not for a single pack: its upper lanes read the last ones again then.
+        const std::uint32_t last = (n + lanes - 1) / lanes * lanes - lanes;
+        for (std::uint32_t m = 0; m < n; m += single_lanes) {
+          const SingleIndexPack j{row + m, row + std::min<std::uint32_t>(m + lanes, last)};
+          pair_loop::add_lanes(sum, self().pair(P(unit_kernel, view, scales, i, j)),
+                               first_single_lanes(n - m));
+        }
+      }
+      pair_loop::finish_particle(self(), particle, sum);
+    });
+  }
+
+  // The same with what FreezeGeometry has written, side by side.
+  template <int D>
+  [[gnu::noinline, gnu::flatten]] void frozen_columns(const shoal_chunk& chunk) const {
+    FrozenGeometry& geometry = self().single->frozen;
+    const SingleRecords& records = self().single->records;
+    const auto fields = pair_loop::neighbour_fields(self());
+    using View = pair_loop::RecordView<D, std::remove_const_t<decltype(fields)>>;
+    using P = FrozenPair<D, View>;
     using Result = decltype(self().pair(std::declval<const P&>()));
     const double h = smoothing_length();
     const std::uint64_t end = geometry.first_group(chunk.end);
     for (std::uint64_t group = geometry.first_group(chunk.begin); group < end; ++group) {
-      const auto first = static_cast<std::uint32_t>(group * lanes);
+      const std::uint64_t first = group * single_lanes;
+      const int n = geometry.rows_in(group);
+      const typename P::Own i(records.template view<D>(0, fields),
+                              {first, n > lanes ? first + lanes : first});
       Result sum{};
       for (std::size_t k = 0; k < n_relations(); ++k) {
+        const View view = records.template view<D>(k, fields);
         FrozenGeometry::Column column = geometry.columns(k, group);
         for (std::uint64_t m = geometry.n_columns(k, group); m > 0; --m, column.advance(D))
-          pair_loop::add(sum, self().pair(P(h, k, Own{&first}, column.neighbours, column.numbers)));
+          pair_loop::add(sum, self().pair(P(h, view, i, column.neighbours, column.numbers)));
       }
       const pair_loop::Lanes<Result> sums(sum);
-      for (int lane = 0; lane < geometry.rows_in(group); ++lane)
+      for (int lane = 0; lane < n; ++lane)
         pair_loop::finish_particle(
-            self(), Particle<D>{first + static_cast<std::uint32_t>(lane), chunk.partial}, sums.of(lane));
+            self(), Particle<D>{first + static_cast<std::uint64_t>(lane), chunk.partial}, sums.of(lane));
     }
   }
 
@@ -381,6 +507,7 @@ class PairOperator : public OperatorBase {
 
   In<Vector> position_{geometry()};
   std::vector<std::uint32_t> rows_with_neighbours_;  // of operators that skip lonely particles
+  std::vector<char> stale_;                          // [relation] records that must be made anew
   mutable std::vector<pair_loop::KeptPairs>
       kept_;  // [relation]; rows are written by the thread that runs them
 };

@@ -66,6 +66,8 @@ struct Setup {
   bool scalar = false;           // one neighbour after the other
   std::uint64_t generation = 1;  // of the lists: another number tells the operator that they are new
   double cutoff = 0;             // m, of the lists; 0: that of the smoothing kernel
+  // Positions by which the lists of a body with itself are made, if not those that it has: particles that have moved since.
+  std::vector<double> listed_at = {};
 };
 
 namespace impl {
@@ -75,9 +77,9 @@ struct Rows {
   std::vector<std::uint32_t> counts, indices;
 };
 
-inline Rows all_pairs(Body& own, Body& other, double cutoff) {
+inline Rows all_pairs(Body& own, Body& other, double cutoff, const std::vector<double>& at = {}) {
   const auto d = static_cast<std::size_t>(own.dimensions());
-  const auto &x = own["position"], &y = other["position"];
+  const auto &x = at.empty() ? own["position"] : at, &y = at.empty() ? other["position"] : at;
   Rows rows;
   for (std::size_t i = 0; i < own.size(); ++i) {
     rows.offsets.push_back(rows.indices.size());
@@ -114,6 +116,13 @@ void run_chunk(const Op& op, int dimensions, const shoal_chunk& chunk, bool scal
   dimensions == 2 ? op.template run_chunk<2>(chunk) : op.template run_chunk<3>(chunk);
 }
 
+template <class Op>
+void prepare(const Op& op, int dimensions, const shoal_chunk& chunk) {
+  if constexpr (requires { op.template prepare_chunk<2>(chunk); })
+    if (op.prepares())
+      dimensions == 2 ? op.template prepare_chunk<2>(chunk) : op.template prepare_chunk<3>(chunk);
+}
+
 }  // namespace impl
 
 // Runs an operator once over all particles of `own`, in two chunks where there are enough.
@@ -133,15 +142,15 @@ void run(Op& op, Body& own, std::vector<Body*> neighbours, const Setup& setup) {
   std::vector<shoal_field> mine, theirs;
   const auto view = [](Body& body, const shoal_access& access) {
     const std::uint32_t components = impl::components_of(access.rank, body.dimensions(), access.components);
-    return shoal_field{sizeof(shoal_field), components, body.data(access.field, components), body.size(),
-                       body.size()};
+    return shoal_field{sizeof(shoal_field), components,  body.data(access.field, components),
+                       body.size(),         body.size(), nullptr};
   };
   for (const shoal_access& access : accesses) mine.push_back(view(own, access));
   std::vector<impl::Rows> rows;
   std::vector<shoal_neighbours> lists;
   for (Body* body : neighbours) {
     for (const shoal_access& access : accesses) theirs.push_back(view(*body, access));
-    rows.push_back(impl::all_pairs(own, *body, target.cutoff));
+    rows.push_back(impl::all_pairs(own, *body, target.cutoff, setup.listed_at));
   }
   for (const impl::Rows& row : rows)
     lists.push_back({sizeof(shoal_neighbours), 0, row.offsets.data(), row.counts.data(), row.indices.data(),
@@ -155,6 +164,7 @@ void run(Op& op, Body& own, std::vector<Body*> neighbours, const Setup& setup) {
   step.dt = step.parent_dt = setup.dt;
   step.time = step.parent_time = setup.time;
   op.set_step(step);
+  if constexpr (requires { op.before_begin(); }) op.before_begin();
   if constexpr (requires { op.begin(); }) op.begin();
 
   std::vector<double> partials;
@@ -163,9 +173,10 @@ void run(Op& op, Body& own, std::vector<Body*> neighbours, const Setup& setup) {
                        : how == SHOAL_MINIMUM ? std::numeric_limits<double>::infinity()
                                               : -std::numeric_limits<double>::infinity());
   const std::uint64_t middle = own.size() / 2;
-  impl::run_chunk(op, own.dimensions(), {sizeof(shoal_chunk), 0, 0, middle, partials.data()}, setup.scalar);
-  impl::run_chunk(op, own.dimensions(), {sizeof(shoal_chunk), 1, middle, own.size(), partials.data()},
-                  setup.scalar);
+  const shoal_chunk first{sizeof(shoal_chunk), 0, 0, middle, partials.data()};
+  const shoal_chunk second{sizeof(shoal_chunk), 1, middle, own.size(), partials.data()};
+  for (const shoal_chunk& chunk : {first, second}) impl::prepare(op, own.dimensions(), chunk);
+  for (const shoal_chunk& chunk : {first, second}) impl::run_chunk(op, own.dimensions(), chunk, setup.scalar);
   op.set_results(partials.data());
   if constexpr (requires { op.end(); }) op.end();
 }

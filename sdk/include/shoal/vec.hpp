@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Shoal authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Vec and Mat: small vectors and matrices for pair code, over double or Pack.
+// Vec and Mat: small vectors and matrices for pair code, over double, Pack or SinglePack.
 //
 // Plain structs, because Eigen inside a pair loop stops vectorisation (measured: three times slower). For the
 // algebra of single particles (eigenvalues, decompositions) use Eigen through shoal/eigen.hpp.
@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "shoal/pack.hpp"
+#include "shoal/single_pack.hpp"
 
 namespace shoal {
 inline namespace SHOAL_ISA_NAMESPACE {
@@ -74,11 +75,14 @@ struct Mat {
 };
 
 namespace detail {
+template <class S>
+inline constexpr bool is_pack = std::is_same_v<S, Pack> || std::is_same_v<S, SinglePack>;
+
 template <class A, class B>
-using Promoted = std::conditional_t<std::is_same_v<A, Pack> || std::is_same_v<B, Pack>, Pack, double>;
+using Promoted = std::conditional_t<is_pack<A>, A, std::conditional_t<is_pack<B>, B, double>>;
 
 template <class S>
-concept Scalar = std::is_arithmetic_v<S> || std::is_same_v<S, Pack>;
+concept Scalar = std::is_arithmetic_v<S> || is_pack<S>;
 
 template <class S>
 using RealOf = std::conditional_t<std::is_arithmetic_v<S>, double, S>;

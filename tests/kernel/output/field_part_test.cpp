@@ -22,7 +22,7 @@ double value(shoal_rank rank, int dimensions, const std::vector<double>& numbers
   // The second particle, so that strides matter.
   std::vector<double> data(numbers.size(), -99.0);
   data.insert(data.end(), numbers.begin(), numbers.end());
-  const shoal_field field{sizeof(shoal_field), info.components, data.data(), 2, 2};
+  const shoal_field field{sizeof(shoal_field), info.components, data.data(), 2, 2, nullptr};
   return FieldPart(info, name, dimensions, "case.yaml:1:2").value(field, 1, flip);
 }
 

@@ -36,11 +36,11 @@ struct Operator {
   std::vector<shoal_relation_request> relations;
   std::vector<std::uint32_t> reductions;
 
-  std::uint32_t bytes_per_pair = 0;
+  std::uint32_t bytes_per_pair = 0, bytes_per_particle = 0;
 
   std::function<shoal_status(const Views&)> bind;
   std::function<shoal_status(const shoal_step&)> begin;
-  std::function<shoal_status(const Views&, const shoal_step&, const shoal_chunk&)> run;
+  std::function<shoal_status(const Views&, const shoal_step&, const shoal_chunk&)> prepare, run;
   std::function<shoal_status(const shoal_step&, const double*)> end;
   std::function<double(const Views&, const shoal_step&, const shoal_chunk&)> time_step;
   std::function<shoal_status(const shoal_stream&)> save, load;
@@ -114,7 +114,12 @@ inline shoal_operator to_c(Operator op) {
     c.save = [](void* self, const shoal_stream* stream) { return of(self).op.save(*stream); };
     c.load = [](void* self, const shoal_stream* stream) { return of(self).op.load(*stream); };
   }
+  if (kept.prepare)
+    c.prepare = [](void* self, const shoal_step* step, const shoal_chunk* chunk) {
+      return of(self).op.prepare(of(self).views, *step, *chunk);
+    };
   c.bytes_per_pair = kept.bytes_per_pair;
+  c.bytes_per_particle = kept.bytes_per_particle;
   if (kept.exchange)
     c.exchange = [](void* self, const shoal_step* step, shoal_exchange* asked) {
       return of(self).op.exchange(of(self).views, *step, *asked);

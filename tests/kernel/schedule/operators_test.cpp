@@ -68,14 +68,14 @@ double tree_sum(const std::vector<double>& values) {
 }  // namespace
 
 TEST_CASE("reductions are bitwise equal for any number of threads, and follow the tree") {
-  for (const int n : {1, 255, 256, 257, 4999, 20011, 100000}) {
+  for (const int n : {1, 127, 128, 129, 4999, 20011, 100000}) {
     const std::vector<double> one = reduce(n, 1), two = reduce(n, 2), three = reduce(n, 3);
     CHECK(one == two);
     CHECK(one == three);
     std::vector<double> chunks;
     double smallest = 1e300, largest = -1e300;
     for (int i = 0; i < n; ++i) {
-      if (i % 256 == 0) chunks.push_back(0.0);
+      if (i % 128 == 0) chunks.push_back(0.0);
       const double value = std::sin(i + 0.5) * std::pow(10.0, i % 17 - 8.0);
       chunks.back() += value;
       smallest = std::min(smallest, value);
@@ -90,7 +90,7 @@ TEST_CASE("reductions are bitwise equal for any number of threads, and follow th
   CHECK(reduce(20000, 2, SHOAL_OPERATOR_SERIAL)[1] == reduce(20000, 2)[1]);
 }
 
-TEST_CASE("chunks are 256 particles, each once, in order where serial") {
+TEST_CASE("chunks are 128 particles, each once, in order where serial") {
   for (const int n : {600, 10000}) {
     for (const bool serial : {false, true}) {
       SimulationSettings what = settings(2, 1.0);
@@ -106,7 +106,7 @@ TEST_CASE("chunks are 256 particles, each once, in order where serial") {
       op.run = [&](const Views& views, const shoal_step&, const shoal_chunk& chunk) {
         const std::lock_guard lock(mutex);
         chunks.insert({chunk.begin, chunk.end});
-        CHECK((serial || chunk.begin == chunk.number * 256u));
+        CHECK((serial || chunk.begin == chunk.number * 128u));
         CHECK(views.n_owned == static_cast<std::uint64_t>(n));
         return SHOAL_OK;
       };
@@ -114,7 +114,7 @@ TEST_CASE("chunks are 256 particles, each once, in order where serial") {
       run.finalise();
       run.initialise();
       run.step();
-      CHECK(chunks.size() == (serial ? 1 : (n + 255) / 256));
+      CHECK(chunks.size() == (serial ? 1 : (n + 127) / 128));
       std::uint64_t next = 0;
       for (const auto& [begin, end] : chunks) {
         CHECK(begin == next);
@@ -327,7 +327,7 @@ TEST_CASE("statuses become exceptions with the plugin's own words") {
     Operator op;
     op.run = [=](const Views&, const shoal_step&, const shoal_chunk& chunk) {
       if (throws) throw std::runtime_error("escaped");
-      if (chunk.begin < 256) return SHOAL_OK;
+      if (chunk.begin < 128) return SHOAL_OK;
       text = "the table ends at chunk " + std::to_string(chunk.number);
       return status;
     };
@@ -359,6 +359,7 @@ TEST_CASE("timings count calls, particles and true pairs") {
   op.name = "test.pairs";
   op.access("position", SHOAL_READ | SHOAL_OF_NEIGHBOURS, SHOAL_RANK_VECTOR).relation(0, 2.6);
   op.bytes_per_pair = 16;
+  op.bytes_per_particle = 24;
   op.run = [&](const Views& views, const shoal_step&, const shoal_chunk& chunk) {
     for (std::uint64_t i = chunk.begin; i < chunk.end; ++i) pairs += views.neighbours[0].counts[i];
     return SHOAL_OK;
@@ -379,5 +380,88 @@ TEST_CASE("timings count calls, particles and true pairs") {
   CHECK(plan.relations[0].mean_neighbours == doctest::Approx(static_cast<double>(pairs) / 8 / 400));
   CHECK(plan.relations[0].kept_bytes_per_pair == 16);
   CHECK(plan.bodies[0].list_bytes > 16 * pairs / 8);  // with what the operator keeps beside the list
-  CHECK(plan.total_bytes == plan.bodies[0].field_bytes + plan.bodies[0].list_bytes);
+  CHECK(plan.bodies[0].kept_bytes_per_particle == 24);
+  CHECK(plan.total_bytes == plan.bodies[0].field_bytes + plan.bodies[0].list_bytes + 24 * 400);
+}
+
+TEST_CASE("all chunks are prepared before the first of them runs, on any number of threads") {
+  Simulation run(settings(2, 1.0));
+  run.add_body(lattice("b", 2, {120, 120}, 1.0));
+  const Physics physics(run);
+  physics.loop("main", {"all"});
+  physics.attach("main", "all", limiter(0.125));
+  Operator op;
+  std::atomic<std::uint64_t> prepared = 0, run_early = 0, called = 0;
+  op.name = "test.prepares";
+  op.access("position", SHOAL_READ, SHOAL_RANK_VECTOR);
+  op.prepare = [&](const Views&, const shoal_step&, const shoal_chunk& chunk) {
+    prepared += chunk.end - chunk.begin;
+    return SHOAL_OK;
+  };
+  op.run = [&](const Views& views, const shoal_step&, const shoal_chunk&) {
+    ++called;
+    if (prepared % views.n_owned != 0) ++run_early;
+    return SHOAL_OK;
+  };
+  physics.attach("main", "all", op);
+  run.finalise();
+  run.initialise();
+  while (!run.finished()) run.step();
+  CHECK(prepared == 8 * 14400);
+  CHECK(called == 8 * ((14400 + 127) / 128));
+  CHECK(run_early == 0);
+}
+
+TEST_CASE("a field counts its changes, and rests while nobody writes it") {
+  Simulation run(settings(2, 1.0));
+  run.add_body(lattice("b", 2, {20, 20}, 1.0));
+  const Physics physics(run);
+  physics.loop("main", {"write", "read"});
+  physics.attach("main", "write", limiter(0.125));
+  Operator writer, reader;
+  writer.name = "test.writer";
+  writer.access("pressure", SHOAL_WRITE);
+  writer.run = [&](const Views& views, const shoal_step& step, const shoal_chunk& chunk) {
+    for (std::uint64_t i = chunk.begin; i < chunk.end; ++i) views.real(0)[i] = step.time;
+    return SHOAL_OK;
+  };
+  physics.attach("main", "write", writer);
+  std::vector<std::uint64_t> of_position, of_pressure;
+  reader.name = "test.reader";
+  reader.access("position", SHOAL_READ | SHOAL_OF_NEIGHBOURS, SHOAL_RANK_VECTOR)
+      .access("pressure", SHOAL_READ | SHOAL_OF_NEIGHBOURS)
+      .relation(0, 2.6);
+  reader.run = [&](const Views& views, const shoal_step&, const shoal_chunk& chunk) {
+    if (chunk.number == 0) {
+      of_position.push_back(*views.of_neighbours[0].changes);
+      of_pressure.push_back(*views.of_neighbours[1].changes);
+    }
+    return SHOAL_OK;
+  };
+  physics.attach("main", "read", reader);
+  run.finalise();
+  run.initialise();
+  while (!run.finished()) run.step();
+  REQUIRE(of_position.size() == 8);
+  for (std::size_t k = 1; k < 8; ++k) {
+    CHECK(of_position[k] == of_position[k - 1]);
+    CHECK(of_pressure[k] > of_pressure[k - 1]);
+  }
+}
+
+TEST_CASE("an operator that cannot prepare says so") {
+  Simulation run(settings(2, 1.0));
+  run.add_body(lattice("b", 2, {10, 10}, 1.0));
+  const Physics physics(run);
+  physics.loop("main", {"all"});
+  physics.attach("main", "all", limiter(0.125));
+  Operator op;
+  op.name = "test.prepares";
+  op.access("position", SHOAL_READ, SHOAL_RANK_VECTOR);
+  op.prepare = [&](const Views&, const shoal_step&, const shoal_chunk&) { return SHOAL_ERROR; };
+  op.run = [&](const Views&, const shoal_step&, const shoal_chunk&) { return SHOAL_OK; };
+  physics.attach("main", "all", op);
+  run.finalise();
+  run.initialise();
+  CHECK_THROWS_AS(run.step(), OperatorFailure);
 }

@@ -56,9 +56,9 @@ void check_equal(const std::vector<double>& got, const std::vector<double>& want
 // Runs an operator with the geometry of the middle of a step that begins with the body as it is.
 template <class Op>
 void run_frozen(Op& op, Body& body, double h, double step) {
-  op.geometry = std::make_shared<FrozenGeometry>();
+  op.single = std::make_shared<SinglePrecision>();
   FreezeGeometry freeze;
-  freeze.geometry = op.geometry;
+  freeze.single = op.single;
   testing::run(freeze, body, {&body}, {.smoothing_length = h, .dt = step});
   testing::run(op, body, {&body}, {.smoothing_length = h});
 }
@@ -97,23 +97,79 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("with frozen geometry momentum is conserved to rounding") {
+TEST_CASE("in single precision both passes give what they do in double in 3D too") {
   const double dx = 0.1, h = 1.3 * dx;
-  Body body = disordered(2, dx);
-  PressureForce op;
-  op.reference_density = rho0;
-  op.sound_speed = c;
-  body.set_each("pressure_acceleration", 2, [](auto, auto) { return 0.0; });
-  run_frozen(op, body, h, 0.25 * h / c);
-  double total[2] = {}, size = 0;
-  for (std::size_t i = 0; i < body.size(); ++i)
-    for (std::size_t a = 0; a < 2; ++a) {
-      const double force = body["mass"][i] * body["pressure_acceleration"][2 * i + a];
-      total[a] += force;
-      size += std::abs(force);
+  Body body = disordered(3, dx), same = body;
+  PressureForce force, force_in_double;
+  VelocityDivergence divergence, divergence_in_double;
+  force.single = divergence.single = std::make_shared<SinglePrecision>();
+  const auto compare = [&](auto& op, auto& reference, const char* rate) {
+    op.reference_density = reference.reference_density = rho0;
+    op.sound_speed = reference.sound_speed = c;
+    testing::run(op, body, {&body}, {.smoothing_length = h});
+    testing::run(reference, same, {&same}, {.smoothing_length = h});
+    check_equal(body["pressure_acceleration"], same["pressure_acceleration"], 1e-6);
+    check_equal(body[rate], same[rate], 1e-6);
+  };
+  compare(force, force_in_double, "density_diffusion");
+  compare(divergence, divergence_in_double, "compression_rate");
+}
+
+TEST_CASE("in single precision walls do what they do in double, also when they have moved") {
+  const double dx = 0.1, h = 1.3 * dx;
+  Body water = disordered(3, dx);
+  water.set_each("acceleration", 3, [](auto, auto a) { return a == 2 ? -9.81 : 0.0; });
+  for (const char* field : {"pressure_acceleration", "compression_rate"})
+    water.set_each(field, field[0] == 'p' ? 3 : 1, [](auto, auto) { return 0.0; });
+  Body same = water;
+  Body wall(3, lattice(3, dx, {0, 0, -0.3}, {0.6, 0.6, 0}));
+  wall.set("volume", dx * dx * dx);
+  wall.set_each("normal", 3, [](auto, auto a) { return a == 2 ? 1.0 : 0.0; });
+  wall.set_each("velocity", 3, [](auto, auto a) { return a == 2 ? 0.3 : -0.2; });
+  wall.set_each("signed_distance", 1, [&](std::size_t i, auto) { return wall["position"][3 * i + 2]; });
+  WallPressureForce force, force_in_double;
+  WallVelocityDivergence divergence, divergence_in_double;
+  force.single = std::make_shared<SinglePrecision>();
+  divergence.single = std::make_shared<SinglePrecision>();
+  for (const double lift : {0.0, 0.02}) {
+    for (std::size_t i = 0; i < wall.size(); ++i) wall["position"][3 * i + 2] += lift;
+    force.reference_density = force_in_double.reference_density = rho0;
+    divergence.sound_speed = divergence_in_double.sound_speed = c;
+    testing::run(force, water, {&wall}, {.smoothing_length = h});
+    testing::run(force_in_double, same, {&wall}, {.smoothing_length = h});
+    check_equal(water["pressure_acceleration"], same["pressure_acceleration"], 1e-6);
+    testing::run(divergence, water, {&wall}, {.smoothing_length = h});
+    testing::run(divergence_in_double, same, {&wall}, {.smoothing_length = h});
+    check_equal(water["pressure_acceleration"], same["pressure_acceleration"], 1e-6);
+    check_equal(water["compression_rate"], same["compression_rate"], 1e-6);
+  }
+}
+
+TEST_CASE("in single precision momentum is conserved to its rounding") {
+  const double dx = 0.1, h = 1.3 * dx;
+  for (const int dimensions : {2, 3}) {
+    CAPTURE(dimensions);
+    Body body = disordered(dimensions, dx);
+    const auto d = static_cast<std::size_t>(dimensions);
+    PressureForce op;
+    op.reference_density = rho0;
+    op.sound_speed = c;
+    body.set_each("pressure_acceleration", d, [](auto, auto) { return 0.0; });
+    if (dimensions == 2) {
+      run_frozen(op, body, h, 0.25 * h / c);
+    } else {
+      op.single = std::make_shared<SinglePrecision>();
+      testing::run(op, body, {&body}, {.smoothing_length = h});
     }
-  CHECK(std::abs(total[0]) < 1e-14 * size);
-  CHECK(std::abs(total[1]) < 1e-14 * size);
+    double total[3] = {}, size = 0;
+    for (std::size_t i = 0; i < body.size(); ++i)
+      for (std::size_t a = 0; a < d; ++a) {
+        const double force = body["mass"][i] * body["pressure_acceleration"][d * i + a];
+        total[a] += force;
+        size += std::abs(force);
+      }
+    for (const double sum : total) CHECK(std::abs(sum) < 1e-8 * size);
+  }
 }
 
 TEST_CASE("pressure force and its dissipation equal the paper's sums") {

@@ -58,8 +58,12 @@ inline constexpr int numbers = Numbers<T>::count;
 // Writes a result at `place`, or reads it there.
 inline void put(double value, double* place) { *place = value; }
 inline void put(const Pack& value, double* place) { value.store(place); }
+inline void put(const SinglePack& value, double* place) {
+  value.low().store(place);
+  value.high().store(place + lanes);
+}
 template <class T>
-requires(std::is_class_v<T> && !std::is_same_v<T, Pack>) void put(const T& value, double* place) {
+requires(std::is_class_v<T> && !detail::is_pack<T>) void put(const T& value, double* place) {
   constexpr int width = RealTraits<typename Numbers<T>::Number>::lanes;
   if constexpr (requires { value.values; })
     std::apply(
@@ -101,24 +105,22 @@ struct Reader<Sums<Values...>> {
 };
 // One lane of what `put` wrote of packs, at `place` of that lane.
 template <class T>
-struct LaneReader;
-template <>
-struct LaneReader<Pack> {
+struct LaneReader {
   static double get(const double* place) { return *place; }
 };
-template <int D>
-struct LaneReader<Vec<D, Pack>> {
+template <int D, class R>
+struct LaneReader<Vec<D, R>> {
   static Vec<D> get(const double* place) {
     Vec<D> value;
-    for (int k = 0; k < D; ++k) value[k] = place[k * lanes];
+    for (int k = 0; k < D; ++k) value[k] = place[k * RealTraits<R>::lanes];
     return value;
   }
 };
-template <int D>
-struct LaneReader<Mat<D, Pack>> {
+template <int D, class R>
+struct LaneReader<Mat<D, R>> {
   static Mat<D> get(const double* place) {
     Mat<D> value;
-    for (int k = 0; k < D * D; ++k) value[k] = place[k * lanes];
+    for (int k = 0; k < D * D; ++k) value[k] = place[k * RealTraits<R>::lanes];
     return value;
   }
 };
@@ -127,7 +129,7 @@ struct LaneReader<Sums<Values...>> {
   static auto get(const double* place) {
     const auto next = [&]<class V>(std::type_identity<V>) {
       const auto value = LaneReader<V>::get(place);
-      place += lanes * numbers<V>;
+      place += RealTraits<typename Numbers<V>::Number>::lanes * numbers<V>;
       return value;
     };
     using Result = Sums<decltype(LaneReader<Values>::get(place))...>;

@@ -47,18 +47,15 @@ inline Raw sqrt(Raw a) { return _mm512_maskz_sqrt_pd(full_mask, a); }
 // From 14 bits by two steps of Newton's rule: within 2 units in the last place at a third of the time of root and
 // division, which are what pair loops wait for. The same for 1 / a.
 inline constexpr bool fast_inverse_sqrt = true;
-template <int Steps>
-inline Raw inverse_sqrt_by_newton(Raw a) {
+inline Raw inverse_sqrt(Raw a) {
   const Raw one = broadcast(1.0), half = broadcast(0.5);
   Raw y = _mm512_maskz_rsqrt14_pd(full_mask, a);
-  for (int k = 0; k < Steps; ++k) {
+  for (int k = 0; k < 2; ++k) {
     const Raw rest = _mm512_fnmadd_pd(a * y, y, one);  // 1 - a y^2
     y = _mm512_fmadd_pd(half * y, rest, y);
   }
   return y;
 }
-inline Raw inverse_sqrt(Raw a) { return inverse_sqrt_by_newton<2>(a); }
-inline Raw inverse_sqrt_single(Raw a) { return inverse_sqrt_by_newton<1>(a); }
 inline Raw reciprocal(Raw a) {
   const Raw one = broadcast(1.0);
   Raw y = _mm512_maskz_rcp14_pd(full_mask, a);
@@ -212,7 +209,6 @@ inline Raw max(Raw a, Raw b) { return _mm256_max_pd(a, b); }
 inline Raw sqrt(Raw a) { return _mm256_sqrt_pd(a); }
 inline constexpr bool fast_inverse_sqrt = false;
 inline Raw inverse_sqrt(Raw a) { return _mm256_set1_pd(1.0) / _mm256_sqrt_pd(a); }
-inline Raw inverse_sqrt_single(Raw a) { return inverse_sqrt(a); }
 inline Raw reciprocal(Raw a) { return _mm256_set1_pd(1.0) / a; }
 inline Raw abs(Raw a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
 inline double sum(Raw a) {
@@ -370,7 +366,6 @@ inline constexpr bool fast_inverse_sqrt = false;
 // Nothing here approximates a root in less time: both are the root of each lane
 // and a division.
 inline Raw inverse_sqrt(Raw a) { return broadcast(1.0) / sqrt(a); }
-inline Raw inverse_sqrt_single(Raw a) { return inverse_sqrt(a); }
 inline Raw reciprocal(Raw a) { return broadcast(1.0) / a; }
 inline Raw abs(Raw a) {
   const Long2 magnitude = {0x7FFFFFFFFFFFFFFFLL, 0x7FFFFFFFFFFFFFFFLL};
