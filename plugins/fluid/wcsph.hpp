@@ -114,9 +114,8 @@ struct Wcsph final : Physics {
       scales_time_step};
   Param<Choice> precision{
       "precision", nullptr,
-      "Of the sums over pairs in acoustic steps; particles are in double precision always. single: in less "
-      "than "
-      "two thirds of the time, with errors of some 1e-7; in 2D the geometry of pairs is frozen for each "
+      "Of the sums over pairs in acoustic steps; particles are in double precision always. single: in some "
+      "70 % of the time, with errors of some 1e-7; in 2D the geometry of pairs is frozen for each "
       "advection step. Sums with gradient_correction are in double precision.",
       one_of("single", "double"), default_to("single")};
   Param<double> dissipation_limiter{

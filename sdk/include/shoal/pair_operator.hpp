@@ -30,7 +30,7 @@
 //     static constexpr const char* pair_geometry = "reference_position";
 // takes distances from another field than `position`.
 //     std::shared_ptr<SinglePrecision> single;
-// runs the operator in single precision where it is set, in some 60 % of the time (single_precision.hpp): `pair` may ask
+// runs the operator in single precision where it is set, in some 70 % of the time (single_precision.hpp): `pair` may ask
 // weight(volume), r(), r_ij() and their like, in 3D W() and its like too, and fields. With
 //     static constexpr bool single_in_3d_only = true;
 // it does so in three dimensions only, for pairs that ask W() and its like, or must not see frozen geometry.
