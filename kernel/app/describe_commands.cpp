@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "kernel/app/commands.hpp"
 #include "kernel/app/exit_code.hpp"
@@ -91,6 +92,18 @@ const shoal_type* find_section(const std::string& name) {
   return section_table(name);
 }
 
+// A key of the case that is no section of its own, such as resolution.
+std::optional<shoal_type> find_key_of_case(const std::string& name) {
+  shoal_type alone = case_table();
+  for (std::uint32_t k = 0; k < case_table().n_parameters; ++k) {
+    if (case_table().parameters[k].key != name) continue;
+    alone.parameters = case_table().parameters + k;
+    alone.n_parameters = 1;
+    return alone;
+  }
+  return std::nullopt;
+}
+
 [[noreturn]] void unknown(const Workshop& workshop, const std::string& name) {
   std::vector<std::string> known = section_keys();
   for (const shoal_type* section : section_tables()) known.emplace_back(section->name);
@@ -106,7 +119,10 @@ std::string description(Workshop& workshop, const std::string& name) {
   const bool available = is_available(workshop, id);
   const LoadedPlugin* plugin = available ? &open_plugin(workshop, id) : nullptr;
   std::string text;
-  if (const shoal_type* section = find_section(name)) text += describe_type(*section, "section");
+  if (const shoal_type* section = find_section(name))
+    text += describe_type(*section, "section");
+  else if (const std::optional<shoal_type> key = find_key_of_case(name))
+    text += describe_type(*key, "section");
   for (const RegisteredType* type : workshop.registry.find(name))
     text += describe_type(type->table, owner_of(*type));
   if (plugin != nullptr && name == id)

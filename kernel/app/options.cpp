@@ -78,6 +78,11 @@ void add_study(CLI::App& app, Options& options) {
          "case names under 'study'")
       ->type_name("KEY=VALUE,...")
       ->allow_extra_args(false);
+  app.add_option(
+         "--ensemble", options.ensemble,
+         "Values between which runs differ by chance alone: references are compared with the mean over "
+         "them. Without it, what the case names under 'ensemble'")
+      ->type_name("KEY=VALUE,...");
   app.add_option("--want", options.want,
                  "Name the cheapest run within an error, of the first reference or of a probe: error=1%")
       ->type_name("PROBE=ERROR");
@@ -90,6 +95,8 @@ void add_study(CLI::App& app, Options& options) {
   app.add_option("-o,--output", options.output, "Folder of the study; ./results/NAME_study without it")
       ->type_name("FOLDER");
   app.add_flag("-f,--force", options.force, "Run all anew, also what has results");
+  app.add_flag("--strict", options.strict,
+               "Exit code 3 if a reference is not met: by a mean where there is an ensemble, else by a run");
 }
 
 void add_report(CLI::App& app, Options& options) {

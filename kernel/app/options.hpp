@@ -34,6 +34,7 @@ struct Options {
   std::vector<std::string> types;  ///< describe
   std::vector<std::string> cases;  ///< report: cases and folders
   std::vector<std::string> vary;   ///< study: KEY=VALUE,VALUE,...
+  std::string ensemble;            ///< study: KEY=VALUE,VALUE,...
   std::string want;                ///< study: error=1%
   bool limits = false;             ///< study, report: of all factors of time steps
   std::vector<std::string> limit;  ///< study: KEY, KEY=VALUE

@@ -99,6 +99,7 @@ class CaseReader {
     model.physics = values.objects("physics");
     model.outputs = values.objects("output");
     model.study = values.texts("study");
+    model.ensemble = values.optional_text("ensemble");
     model.limits = values.texts("limits");
     model.smoothing = section("smoothing");
     read_domain();
@@ -364,6 +365,7 @@ class CaseReader {
     reference.value_shift = values.real("value_shift");
     reference.error = values.text("error");
     reference.tolerance = values.real("tolerance");
+    reference.mean_tolerance = values.optional_real("mean_tolerance");
     reference.scale = values.optional_real("scale");
     reference.average = values.optional_real("average");
     reference.from = values.real("from");

@@ -96,6 +96,7 @@ struct ReferenceModel {
   double value_scale = 1, value_shift = 0;
   std::string error;  ///< rms, relative_rms, max, peak, final
   double tolerance = 0;
+  std::optional<double> mean_tolerance;  ///< of the mean over an ensemble
   std::optional<double> scale;
   std::optional<double> average;         ///< s
   double from = 0;                       ///< s
@@ -134,6 +135,7 @@ struct CaseModel {
   std::vector<ProbeModel> probes;
   std::vector<ReferenceModel> references;
   std::vector<std::string> study;           ///< KEY=VALUE,VALUE,...
+  std::optional<std::string> ensemble;      ///< KEY=VALUE,VALUE,...
   std::vector<std::string> limits;          ///< KEY=VALUE
   const shoal_object* smoothing = nullptr;  ///< of section_table("smoothing")
   const shoal_object* values = nullptr;     ///< of case_table()

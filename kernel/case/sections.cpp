@@ -197,6 +197,8 @@ const shoal_type& reference_table() {
           measures),
       row(SHOAL_REAL, "tolerance", "1", required | positive, nullptr,
           "Largest error with which the case passes.", "5 %"),
+      row(SHOAL_REAL, "mean_tolerance", "1", positive, nullptr,
+          "The same for the mean over the runs of an ensemble; 'tolerance' without this key.", "2 %"),
       row(SHOAL_REAL, "scale", nullptr, positive, nullptr,
           "What differences are divided by instead, in SI units.", "1000"),
       row(SHOAL_REAL, "average", "s", positive, nullptr,
@@ -252,6 +254,10 @@ const std::vector<shoal_parameter>& case_rows() {
       row(SHOAL_TEXT, "study", nullptr, list, "[]",
           "What `shoal study` and `shoal report` vary where the command line does not: KEY=VALUE,VALUE,...",
           "[\"dx=$H/20,$H/40,$H/80\"]"),
+      row(SHOAL_TEXT, "ensemble", nullptr, 0, nullptr,
+          "Runs of `shoal study` and `shoal report` that differ by chance alone, KEY=VALUE,VALUE,...: where "
+          "no two runs of a flow are the same, references are compared with their mean.",
+          "\"physics.0.fluid.wcsph.acoustic_cfl=0.88,0.87,0.86\""),
       row(SHOAL_TEXT, "limits", nullptr, list, "[]",
           "Other values, KEY=VALUE, with which `--limits` of `shoal study` and `shoal report` looks for the "
           "longest "

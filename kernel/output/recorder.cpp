@@ -49,6 +49,7 @@ ReferenceSpecification specification_of(const ReferenceModel& model) {
   }
   specification.measure = error_measure(model.error).value_or(ErrorMeasure::rms);
   specification.tolerance = model.tolerance;
+  specification.mean_tolerance = model.mean_tolerance;
   specification.scale = model.scale;
   specification.from = model.from;
   specification.to = model.to;
@@ -116,8 +117,8 @@ void Recorder::bind(const Simulation& run) {
   }
 }
 
-std::filesystem::path Recorder::file_of(const std::string& probe) const {
-  return folder_ / "probes" / (probe + ".csv");
+std::filesystem::path probe_table(const std::filesystem::path& results, const std::string& probe) {
+  return results / "probes" / (probe + ".csv");
 }
 
 void Recorder::open(const std::filesystem::path& folder) { open(folder, RecorderState{}); }
@@ -135,7 +136,7 @@ void Recorder::open(const std::filesystem::path& folder, const RecorderState& st
       return candidate.probe == probe.model->name;
     });
     const std::vector<Column> columns = probe.probe->columns();
-    const std::filesystem::path path = file_of(probe.model->name);
+    const std::filesystem::path path = probe_table(folder_, probe.model->name);
     probe.file = known == state.series.end() ? std::make_unique<SeriesFile>(path, columns)
                                              : std::make_unique<SeriesFile>(path, columns, known->bytes);
   }
@@ -182,7 +183,7 @@ RecorderState Recorder::state() {
 std::vector<ReferenceResult> Recorder::compare_references(bool finished) const {
   std::vector<ReferenceResult> results;
   for (const ReferenceSpecification& reference : references_)
-    results.push_back(compare_file(reference, file_of(reference.probe), finished));
+    results.push_back(compare_file(reference, probe_table(folder_, reference.probe), finished));
   return results;
 }
 

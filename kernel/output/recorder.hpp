@@ -41,6 +41,9 @@ struct RecorderState {
   std::vector<Series> series;
 };
 
+/// Where the table of a probe is among the results of a run.
+std::filesystem::path probe_table(const std::filesystem::path& results, const std::string& probe);
+
 class Recorder {
  public:
   /// The model must outlive the recorder. Throws ModelError, OutputError (data that cannot be read).
@@ -63,6 +66,7 @@ class Recorder {
   /// With everything until now forced to the disk.
   RecorderState state();
   std::vector<ReferenceResult> compare_references(bool finished) const;
+  const std::vector<ReferenceSpecification>& references() const { return references_; }
   /// Writes all bodies with all fields into `folder`, by the first output, else as CSV. For a run that has failed.
   void dump(const Simulation& run, const std::filesystem::path& folder) const;
 
@@ -77,7 +81,6 @@ class Recorder {
     std::unique_ptr<SeriesFile> file;
   };
   void record(Simulation& run, bool first);
-  std::filesystem::path file_of(const std::string& probe) const;
 
   const CaseModel& model_;
   std::vector<std::unique_ptr<OutputWriter>> outputs_;

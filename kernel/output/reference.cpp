@@ -71,19 +71,23 @@ double value_at(const Series& series, double time) {
   return (1.0 - share) * series.values[k - 1] + share * series.values[k];
 }
 
+// What is compared, point by point; NaN where there is no value.
 struct Pairs {
   std::vector<double> sampled, reference;
-  std::uint64_t left_out = 0;
 
   void add(double value, double known) {
-    if (std::isnan(value) || std::isnan(known)) {
-      ++left_out;
-    } else {
-      sampled.push_back(value);
-      reference.push_back(known);
-    }
+    sampled.push_back(value);
+    reference.push_back(known);
   }
 };
+
+Pairs with_values(const Pairs& all) {
+  Pairs pairs;
+  for (std::size_t k = 0; k < all.sampled.size(); ++k)
+    if (!std::isnan(all.sampled[k]) && !std::isnan(all.reference[k]))
+      pairs.add(all.sampled[k], all.reference[k]);
+  return pairs;
+}
 
 double largest_magnitude(const std::vector<double>& values) {
   double largest = 0.0;
@@ -134,20 +138,17 @@ bool in_window(const ReferenceSpecification& specification, double time) {
 
 // Peaks are taken over all samples: those at the times of the data alone would miss the highest.
 Pairs peak_pairs(const ReferenceSpecification& specification, const Series& sampled, const Series& known) {
-  Pairs pairs;
-  double peak = -std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < sampled.times.size(); ++k) {
-    if (!in_window(specification, sampled.times[k])) continue;
-    if (std::isnan(sampled.values[k]))
-      ++pairs.left_out;
-    else
-      peak = std::max(peak, sampled.values[k]);
-  }
-  if (std::isfinite(peak)) {
-    for (const double value : known.values) pairs.reference.push_back(value);
-    pairs.sampled.assign(known.values.size(), peak);
-  }
-  return pairs;
+  double peak = nan;
+  for (std::size_t k = 0; k < sampled.times.size(); ++k)
+    if (in_window(specification, sampled.times[k])) peak = std::fmax(peak, sampled.values[k]);
+  return {std::vector<double>(known.values.size(), peak), known.values};
+}
+
+std::uint64_t missing(const ReferenceSpecification& specification, const Series& series) {
+  std::uint64_t n = 0;
+  for (std::size_t k = 0; k < series.times.size(); ++k)
+    if (in_window(specification, series.times[k]) && std::isnan(series.values[k])) ++n;
+  return n;
 }
 
 // Of the samples within the window.
@@ -219,9 +220,53 @@ Pairs number_pairs(const ReferenceSpecification& specification, const Series& sa
   const double level = 0.5 * *std::max_element(known.values.begin(), known.values.end());
   const auto got = number_of(specification.measure, within(specification, sampled), level);
   const auto wanted = number_of(specification.measure, known, level);
-  if (got && wanted) pairs.add(*got, *wanted);
+  pairs.add(got.value_or(nan), wanted.value_or(nan));
   return pairs;
 }
+
+// An exact solution is compared at the times of the samples.
+Series known_series(const ReferenceSpecification& specification, const Series& sampled) {
+  if (!specification.exact) return read_reference(specification);
+  Series known;
+  for (const double time : sampled.times) {
+    if (!in_window(specification, time)) continue;
+    known.times.push_back(time);
+    known.values.push_back(specification.exact(time));
+  }
+  return known;
+}
+
+Pairs pairs_of(const ReferenceSpecification& specification, const Series& sampled, const Series& known) {
+  switch (specification.measure) {
+    case ErrorMeasure::peak: return peak_pairs(specification, sampled, known);
+    case ErrorMeasure::arrival:
+    case ErrorMeasure::period:
+    case ErrorMeasure::amplitude: return number_pairs(specification, sampled, known);
+    default: break;
+  }
+  Pairs pairs;
+  for (std::size_t k = 0; k < known.times.size(); ++k)
+    pairs.add(value_at(sampled, known.times[k]), known.values[k]);
+  return pairs;
+}
+
+Series read_series(const ReferenceSpecification& specification, const std::filesystem::path& path) {
+  const Table table = read_table(path);
+  const std::size_t value = specification.column.empty() ? 1 : column_of(table, specification.column, path);
+  Series series;
+  for (const std::vector<double>& row : table.rows) {
+    series.times.push_back(row[0]);
+    series.values.push_back(row[value]);
+  }
+  return series;
+}
+
+Series as_compared(const ReferenceSpecification& specification, Series sampled) {
+  return specification.average > 0.0 ? averaged(sampled, specification.average) : sampled;
+}
+
+constexpr const char* no_value = "the probe has no value at the times of the reference";
+constexpr const char* no_scale = "the reference is zero: give `scale`, what errors are to be divided by";
 
 }  // namespace
 
@@ -260,8 +305,7 @@ void check_reference(const ReferenceSpecification& specification) {
 
 ReferenceResult compare(const ReferenceSpecification& specification, const Series& as_sampled,
                         bool finished) {
-  const Series sampled =
-      specification.average > 0.0 ? averaged(as_sampled, specification.average) : as_sampled;
+  const Series sampled = as_compared(specification, as_sampled);
   ReferenceResult result;
   result.probe = specification.probe;
   result.column = specification.column;
@@ -269,37 +313,19 @@ ReferenceResult compare(const ReferenceSpecification& specification, const Serie
       specification.exact ? "exact: " + specification.exact_text : specification.data.filename().string();
   result.measure = std::string(name_of(specification.measure));
   result.tolerance = specification.tolerance;
-  Series known;
-  if (specification.exact) {
-    for (const double time : sampled.times) {
-      if (!in_window(specification, time)) continue;
-      known.times.push_back(time);
-      known.values.push_back(specification.exact(time));
-    }
-  } else {
-    known = read_reference(specification);
-  }
-  Pairs pairs;
-  if (specification.measure == ErrorMeasure::peak) {
-    pairs = peak_pairs(specification, sampled, known);
-  } else if (specification.measure == ErrorMeasure::arrival ||
-             specification.measure == ErrorMeasure::period ||
-             specification.measure == ErrorMeasure::amplitude) {
-    pairs = number_pairs(specification, sampled, known);
-  } else {
-    for (std::size_t k = 0; k < known.times.size(); ++k)
-      pairs.add(value_at(sampled, known.times[k]), known.values[k]);
-  }
+  const Pairs all = pairs_of(specification, sampled, known_series(specification, sampled));
+  const Pairs pairs = with_values(all);
   result.points = pairs.sampled.size();
-  result.left_out = pairs.left_out;
+  result.left_out = specification.measure == ErrorMeasure::peak ? missing(specification, sampled)
+                                                                : all.sampled.size() - pairs.sampled.size();
   if (pairs.sampled.empty()) {
     result.error = nan;
-    result.remark = "the probe has no value at the times of the reference";
+    result.remark = no_value;
   } else {
     const double by = divisor(specification, pairs);
     result.error = difference(specification.measure, pairs) / by;
     if (by == 0.0)
-      result.remark = "the reference is zero: give `scale`, what errors are to be divided by";
+      result.remark = no_scale;
     else if (result.left_out > 0)
       result.remark = std::to_string(result.left_out) + " points without a value left out";
   }
@@ -314,20 +340,58 @@ ReferenceResult compare(const ReferenceSpecification& specification, const Serie
 
 ReferenceResult compare_file(const ReferenceSpecification& specification, const std::filesystem::path& path,
                              bool finished) {
-  Series sampled;
   try {
-    const Table table = read_table(path);
-    const std::size_t value = specification.column.empty() ? 1 : column_of(table, specification.column, path);
-    for (const std::vector<double>& row : table.rows) {
-      sampled.times.push_back(row[0]);
-      sampled.values.push_back(row[value]);
-    }
+    return compare(specification, read_series(specification, path), finished);
   } catch (const OutputError& error) {
     ReferenceResult result = compare(specification, Series{}, finished);
     result.remark = error.what();
     return result;
   }
-  return compare(specification, sampled, finished);
+}
+
+EnsembleResult compare_ensemble(const ReferenceSpecification& specification,
+                                const std::vector<Series>& runs) {
+  EnsembleResult result;
+  result.tolerance = specification.mean_tolerance.value_or(specification.tolerance);
+  result.error = result.deviation = nan;
+  result.remark = no_value;
+  if (runs.empty()) return result;
+  const Series known = known_series(specification, as_compared(specification, runs[0]));
+  std::vector<Pairs> each;
+  for (const Series& run : runs)
+    each.push_back(pairs_of(specification, as_compared(specification, run), known));
+  const auto n = static_cast<double>(runs.size());
+  Pairs mean = each[0];
+  double squares = 0.0;  // of what runs are off their mean, summed over runs and points
+  for (std::size_t k = 0; k < mean.sampled.size(); ++k) {
+    double sum = 0.0;
+    for (const Pairs& pairs : each) sum += pairs.sampled[k];
+    mean.sampled[k] = sum / n;
+    if (std::isnan(sum) || std::isnan(mean.reference[k])) continue;
+    for (const Pairs& pairs : each) squares += std::pow(pairs.sampled[k] - mean.sampled[k], 2);
+  }
+  mean = with_values(mean);
+  if (mean.sampled.empty()) return result;
+  const double by = divisor(specification, mean);
+  result.error = difference(specification.measure, mean) / by;
+  if (runs.size() > 1)
+    result.deviation = std::sqrt(squares / ((n - 1.0) * static_cast<double>(mean.sampled.size()))) / by;
+  result.remark = by == 0.0 ? no_scale : "";
+  result.verdict = result.error <= result.tolerance ? Verdict::pass : Verdict::fail;
+  return result;
+}
+
+EnsembleResult compare_ensemble_files(const ReferenceSpecification& specification,
+                                      const std::vector<std::filesystem::path>& tables) {
+  std::vector<Series> runs;
+  try {
+    for (const std::filesystem::path& table : tables) runs.push_back(read_series(specification, table));
+    return compare_ensemble(specification, runs);
+  } catch (const OutputError& error) {
+    EnsembleResult result = compare_ensemble(specification, {});
+    result.remark = error.what();
+    return result;
+  }
 }
 
 }  // namespace shoal::kernel

@@ -45,7 +45,8 @@ struct ReferenceSpecification {
   std::string exact_text;
   ErrorMeasure measure = ErrorMeasure::rms;
   double tolerance = 0.0;
-  std::optional<double> scale;  ///< what differences are divided by, instead of the above
+  std::optional<double> mean_tolerance;  ///< of the mean over the runs of an ensemble; else `tolerance`
+  std::optional<double> scale;           ///< what differences are divided by, instead of the above
   double average = 0.0;  ///< s; the probe is averaged over such a window about each of its times; 0: not
   double from = 0.0;     ///< s; what is before and behind is not compared
   std::optional<double> to;
@@ -84,5 +85,22 @@ ReferenceResult compare(const ReferenceSpecification& specification, const Serie
 /// The same with the probe's table from its file.
 ReferenceResult compare_file(const ReferenceSpecification& specification, const std::filesystem::path& table,
                              bool finished);
+
+/// Runs that differ by chance alone, together.
+struct EnsembleResult {
+  double error = 0.0;      ///< of their mean, point by point; NaN where nothing could be compared
+  double deviation = 0.0;  ///< standard deviation of one run, over the same divisor; NaN for a single run
+  double tolerance = 0.0;
+  Verdict verdict = Verdict::fail;
+  std::string remark;  ///< why there is no error
+};
+
+/// Of the measures that look for one number (peak, arrival, period, amplitude) the mean is that of the numbers. Exact
+/// solutions are compared at the times of the first run.
+EnsembleResult compare_ensemble(const ReferenceSpecification& specification, const std::vector<Series>& runs);
+
+/// The same with the probe's table of each run.
+EnsembleResult compare_ensemble_files(const ReferenceSpecification& specification,
+                                      const std::vector<std::filesystem::path>& tables);
 
 }  // namespace shoal::kernel

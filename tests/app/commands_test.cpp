@@ -167,6 +167,7 @@ TEST_CASE("describe, plugins and schema say what there is") {
   CHECK(contains(type.out, "longest_step"));
   CHECK(contains(shoal({"describe", "grains"}).out, "grains.matter"));
   CHECK(contains(shoal({"describe", "run"}).out, "checkpoint_every"));
+  CHECK(contains(shoal({"describe", "resolution"}).out, "Initial distance of the particles."));
   const Result unknown = shoal({"describe", "maximun"});
   CHECK(unknown.code == 2);
   CHECK(contains(unknown.err, "did you mean 'maximum'"));

@@ -161,6 +161,61 @@ TEST_CASE("a case may say what a study varies") {
   CHECK(csv("named/study.csv").size() == 2);
 }
 
+TEST_CASE("runs that differ by chance alone are compared by their mean") {
+  std::filesystem::remove_all("ensemble");
+  std::string text = known_error("ensemble: factor=-1,3,7\n");
+  const std::string tolerance = "tolerance: 1}";
+  write("pile.yaml",
+        text.replace(text.find(tolerance), tolerance.size(), "tolerance: 8 %, mean_tolerance: 5 %}"));
+  // 1 + 3 dx^2 in the mean: 12 % and 3 % off; the runs' deviations are 4 dx^2.
+  std::vector<std::string> words{"study", "pile.yaml", "--vary", "dx=0.2,0.1", "-o", "ensemble"};
+  const Result result = shoal(words);
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  CHECK(csv("ensemble/study.csv").size() == 7);
+  const auto means = csv("ensemble/ensemble.csv");
+  REQUIRE(means.size() == 3);
+  for (const std::size_t k : {1u, 2u}) {
+    const double dx = k == 1 ? 0.2 : 0.1;
+    CHECK(means[k][column(means, "reference")] == "height max");
+    CHECK(means[k][column(means, "runs")] == "3");
+    CHECK(std::stod(means[k][column(means, "error of the mean")]) == doctest::Approx(3.0 * dx * dx));
+    CHECK(std::stod(means[k][column(means, "deviation of a run")]) == doctest::Approx(4.0 * dx * dx));
+    CHECK(std::stod(means[k][column(means, "tolerance")]) == doctest::Approx(0.05));
+    CHECK(means[k][column(means, "verdict")] == (k == 1 ? "FAIL" : "pass"));
+  }
+  CHECK(contains(result.out, "mean over runs"));
+  words.emplace_back("--strict");
+  CHECK(shoal(words).code == 3);
+  // Single runs miss 8 % on the coarse particles only, and one that fails leaves no verdict.
+  CHECK(shoal({"study", "pile.yaml", "--vary", "dx=0.1", "-o", "ensemble", "--strict"}).code == 0);
+  CHECK(shoal({"study", "pile.yaml", "--ensemble", "physics.0.grains.falling.breakdown=0.05,10", "-o",
+               "ensemble"})
+            .code == 3);
+  const auto left = csv("ensemble/ensemble.csv");
+  CHECK(left[1][column(left, "verdict")] == "incomplete");
+  const Result twice = shoal({"study", "pile.yaml", "--vary", "factor=1,2", "-o", "ensemble"});
+  CHECK(twice.code == 2);
+  CHECK(contains(twice.err, "'factor' is varied already"));
+
+  std::filesystem::create_directories("chance");
+  write("chance/pile.yaml", read("pile.yaml"));
+  REQUIRE(shoal({"report", "chance", "-o", "report", "--results", "chances"}).code == 0);
+  const std::string page = read("report/report.md");
+  CHECK(contains(page, "| chance/pile | Falling grains | 3 | 3.0 % | 5.0 % | mean of 3: height max |"));
+  CHECK(contains(page, "| height max | 3 | 3.0 % | 5.0 % | 4.0 % | pass |"));
+}
+
+TEST_CASE("without an ensemble a study is strict with each of its runs") {
+  std::filesystem::remove_all("strict");
+  std::string text = known_error();
+  const std::string tolerance = "tolerance: 1}";
+  write("pile.yaml", text.replace(text.find(tolerance), tolerance.size(), "tolerance: 2 %}"));
+  CHECK(shoal({"study", "pile.yaml", "--vary", "dx=0.1,0.05", "-o", "strict", "--strict"}).code == 0);
+  CHECK(shoal({"study", "pile.yaml", "--vary", "dx=0.2,0.1", "-o", "strict"}).code == 0);
+  CHECK(shoal({"study", "pile.yaml", "--vary", "dx=0.2,0.1", "-o", "strict", "--strict"}).code == 3);
+}
+
 namespace {
 
 // Grains that only decay, v' = -c v by explicit Euler: stable for steps below 2 / c, which the factor 2 gives.

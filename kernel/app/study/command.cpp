@@ -13,6 +13,7 @@
 #include "kernel/app/interrupt.hpp"
 #include "kernel/app/session.hpp"
 #include "kernel/app/study/child.hpp"
+#include "kernel/app/study/ensemble.hpp"
 #include "kernel/app/study/files.hpp"
 #include "kernel/app/study/limits.hpp"
 #include "kernel/app/text.hpp"
@@ -67,6 +68,7 @@ class StudyDriver {
     find_limits();
     tell();
     if (interrupted()) return exit_interrupted;
+    if (options_.strict && misses_a_reference()) return exit_physics_failed;
     const bool all = std::all_of(study_.results.begin(), study_.results.end(), [](const StudyResult& result) {
       return result.finished() || result.out_of_time;
     });
@@ -89,7 +91,18 @@ class StudyDriver {
     limit_settings_ = session.model().limits;
     study_.title = session.model().title.empty() ? case_name(options_.case_file) : session.model().title;
     for (const std::string& text : options_.vary.empty() ? session.model().study : options_.vary)
-      study_.variations.push_back(read_variation(text));
+      study_.variations.push_back(read_variation("--vary", text));
+    const std::string ensemble =
+        options_.ensemble.empty() ? session.model().ensemble.value_or("") : options_.ensemble;
+    if (ensemble.empty()) return;
+    const Variation chance = read_variation("--ensemble", ensemble);
+    for (const Variation& varied : study_.variations)
+      if (varied.key == chance.key)
+        throw UserError(option_place("<--ensemble " + ensemble + ">"),
+                        "'" + chance.key + "' is varied already: a mean is over runs that agree in all else",
+                        {"take it out of --vary, or of 'study' in the case"});
+    runs_of_a_mean_ = chance.values.size();
+    study_.variations.push_back(chance);  // the last changes fastest: the runs of a mean are neighbours
   }
 
   // Every combination is checked before the first one runs.
@@ -136,6 +149,47 @@ class StudyDriver {
     write_atomically(folder_ / "limits.csv", limits_csv(limits_));
   }
 
+  std::vector<std::string> keys_beside_ensemble() const {
+    std::vector<std::string> keys;
+    for (const Variation& variation : study_.variations) keys.push_back(variation.key);
+    keys.pop_back();
+    return keys;
+  }
+
+  void find_means() {
+    if (runs_of_a_mean_ == 0) return;
+    for (std::size_t first = 0; first < study_.results.size(); first += runs_of_a_mean_) {
+      Options options = options_;
+      options.settings = settings(runs_[first]);
+      Session session(options, options.case_file, true);
+      std::vector<std::filesystem::path> folders;
+      for (std::size_t k = first; k < std::min(first + runs_of_a_mean_, study_.results.size()); ++k)
+        if (study_.results[k].finished()) folders.push_back(request_of(k).folder);
+      const std::vector<std::string> names = error_names(study_);
+      const std::vector<ReferenceSpecification>& references = session.recorder().references();
+      for (std::size_t e = 0; e < std::min(references.size(), names.size()); ++e) {
+        EnsembleMean mean{runs_[first].values, names[e], folders.size(), runs_of_a_mean_, {}};
+        mean.values.pop_back();
+        std::vector<std::filesystem::path> tables;
+        for (const auto& folder : folders) tables.push_back(probe_table(folder, references[e].probe));
+        mean.result = compare_ensemble_files(references[e], tables);
+        if (folders.size() < runs_of_a_mean_) mean.result.verdict = Verdict::incomplete;
+        means_.push_back(std::move(mean));
+      }
+    }
+    write_atomically(folder_ / "ensemble.csv", ensemble_csv(keys_beside_ensemble(), means_));
+  }
+
+  bool misses_a_reference() const {
+    if (runs_of_a_mean_ > 0)
+      return std::any_of(means_.begin(), means_.end(),
+                         [](const EnsembleMean& mean) { return mean.result.verdict == Verdict::fail; });
+    for (const StudyResult& result : study_.results)
+      for (const StudyError& error : result.errors)
+        if (result.finished() && !(error.error <= error.tolerance)) return true;
+    return false;
+  }
+
   void choose_error() {
     if (!wish_ || wish_->probe.empty()) return;
     const auto names = error_names(study_);
@@ -156,6 +210,7 @@ class StudyDriver {
     study_.refined = refined_variation(study_.results, study_.variations.size());
     choose_error();
     write_atomically(folder_ / "study.csv", study_csv(study_));
+    find_means();
     const std::string script = study_plot(study_);
     if (script.empty()) return;
     write_atomically(folder_ / "study.gnuplot", script);
@@ -179,6 +234,7 @@ class StudyDriver {
       text += "The case has no reference, so there is no error to compare.\n";
     else
       text += "* no other run has a smaller " + names[study_.chosen] + " error in less time\n";
+    if (!means_.empty()) text += ensemble_table(keys_beside_ensemble(), means_);
     if (wish_ && !names.empty()) {
       const auto best = cheapest(study_.results, study_.chosen, wish_->error);
       text +=
@@ -197,6 +253,8 @@ class StudyDriver {
   std::optional<Wish> wish_;
   Study study_;
   std::vector<StudyRun> runs_;
+  std::size_t runs_of_a_mean_ = 0;  // 0: there is no ensemble
+  std::vector<EnsembleMean> means_;
   std::filesystem::path folder_;
   std::string text_of_case_;
   std::vector<StepFactor> factors_;

@@ -11,8 +11,9 @@
 namespace shoal::kernel::app {
 namespace {
 
-[[noreturn]] void refuse(const std::string& text, const std::string& why) {
-  throw UserError(option_place("<--vary " + text + ">"), why, {"for example: --vary dx=0.1,0.05,0.025"});
+[[noreturn]] void refuse(const std::string& option, const std::string& text, const std::string& why) {
+  throw UserError(option_place("<" + option + " " + text + ">"), why,
+                  {"for example: " + option + " dx=0.1,0.05,0.025"});
 }
 
 std::string trimmed(const std::string& text) {
@@ -47,17 +48,17 @@ std::string file_word(const std::string& key, const std::string& value) {
 
 }  // namespace
 
-Variation read_variation(const std::string& text) {
+Variation read_variation(const std::string& option, const std::string& text) {
   const auto equals = text.find('=');
   Variation variation{trimmed(text.substr(0, equals)), {}};
   if (equals == std::string::npos || variation.key.empty())
-    refuse(text, "it does not say KEY=VALUE,VALUE,...");
+    refuse(option, text, "it does not say KEY=VALUE,VALUE,...");
   variation.values = split(text.substr(equals + 1));
   for (const std::string& value : variation.values)
-    if (value.empty()) refuse(text, "one of the values of '" + variation.key + "' is empty");
+    if (value.empty()) refuse(option, text, "one of the values of '" + variation.key + "' is empty");
   std::set<std::string> distinct(variation.values.begin(), variation.values.end());
   if (distinct.size() < variation.values.size())
-    refuse(text, "two values of '" + variation.key + "' are the same");
+    refuse(option, text, "two values of '" + variation.key + "' are the same");
   return variation;
 }
 

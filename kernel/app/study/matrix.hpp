@@ -10,14 +10,14 @@
 
 namespace shoal::kernel::app {
 
-/// One --vary KEY=VALUE,VALUE,...
+/// One --vary or --ensemble KEY=VALUE,VALUE,...
 struct Variation {
   std::string key;
   std::vector<std::string> values;
 };
 
-/// Commas inside brackets do not separate values. Throws UserError.
-Variation read_variation(const std::string& text);
+/// `option`: --vary or --ensemble, for messages. Commas inside brackets do not separate values. Throws UserError.
+Variation read_variation(const std::string& option, const std::string& text);
 
 struct StudyRun {
   std::string name;                 ///< of its folder, e.g. "dx=0.05_scheme=new"

@@ -190,6 +190,50 @@ Rows errors(const CaseReport& report) {
   return rows;
 }
 
+// ensemble.csv by the meaning of its columns: first the variations.
+class MeansTable {
+ public:
+  explicit MeansTable(const std::vector<std::vector<std::string>>& table) : table_(table) {}
+  std::size_t rows() const { return table_.empty() ? 0 : table_.size() - 1; }
+  std::string text(std::size_t row, const std::string& column) const {
+    const auto at = std::find(table_[0].begin(), table_[0].end(), column) - table_[0].begin();
+    const std::string& cell = table_[row].at(static_cast<std::size_t>(at));
+    const std::optional<double> value = number(cell);
+    return value && column != "runs" ? percent_text(*value) : cell;
+  }
+  /// The mean that misses its reference most, or meets it with least to spare; nothing if one has no error.
+  std::optional<std::size_t> hardest() const {
+    std::optional<std::size_t> worst;
+    for (std::size_t row = 1; row <= rows(); ++row) {
+      if (!share(row)) return std::nullopt;
+      if (!worst || *share(row) > *share(*worst)) worst = row;
+    }
+    return worst;
+  }
+
+ private:
+  std::optional<double> share(std::size_t row) const {
+    const std::size_t n = table_[0].size();  // ..., error of the mean, tolerance, deviation of a run, verdict
+    const auto error = number(table_[row].at(n - 4)), tolerance = number(table_[row].at(n - 3));
+    return error && tolerance ? std::optional(*error / *tolerance) : std::nullopt;
+  }
+  const std::vector<std::vector<std::string>>& table_;
+};
+
+Rows means(const CaseReport& report) {
+  const MeansTable table(report.means);
+  if (table.rows() == 0) return {};
+  Rows rows{report.means[0]};
+  for (std::size_t row = 1; row <= table.rows(); ++row) {
+    auto& out = rows.emplace_back(report.means[row]);
+    for (std::size_t c = 0; c < out.size(); ++c)
+      if (const std::string& name = rows[0][c];
+          name == "error of the mean" || name == "tolerance" || name == "deviation of a run")
+        out[c] = table.text(row, name);
+  }
+  return rows;
+}
+
 // How far time steps can be raised, as limits.csv says.
 Rows limits(const CaseReport& report) {
   if (report.limits.size() < 2) return {};
@@ -231,7 +275,12 @@ Rows overview(const std::vector<CaseReport>& cases) {
         if (!best || table.share(run, *r) < table.share(*best, *table.hardest(*best))) best = run;
     }
     const std::size_t run = best.value_or(table.runs());
-    if (best) {
+    const MeansTable together(report.means);
+    if (const auto mean = together.hardest()) {  // a single run says nothing where no two are the same
+      row.insert(row.end(),
+                 {together.text(*mean, "error of the mean"), together.text(*mean, "tolerance"),
+                  "mean of " + together.text(*mean, "runs") + ": " + together.text(*mean, "reference"), ""});
+    } else if (best) {
       const std::size_t r = *table.hardest(run);
       row.insert(row.end(),
                  {table.text(run, r), table.text(run, r + 1), table.name(r), table.text(run, r + 2)});
@@ -270,7 +319,7 @@ std::string markdown_page(const MachineReport& machine, const std::vector<CaseRe
     if (!report.what.empty()) text += report.what + "\n\n";
     text += "Plugins: " + report.plugins + ".\n\n";
     if (!report.failure.empty()) text += "**" + report.failure + "**\n\n";
-    for (const Rows& rows : {errors(report), costs(report), limits(report)})
+    for (const Rows& rows : {errors(report), means(report), costs(report), limits(report)})
       if (!rows.empty()) text += markdown_table(rows) + "\n";
     for (const auto& [name, svg] : report.pictures)
       text += fmt::format("![{}]({})\n", heading(name), picture_file(report, name));
@@ -290,7 +339,7 @@ std::string html_page(const MachineReport& machine, const std::vector<CaseReport
     text += fmt::format("<h2>{}/{}: {}</h2>\n<p>{}</p>\n<p>Plugins: {}.</p>\n", report.area, report.name,
                         escaped(report.title), escaped(report.what), escaped(report.plugins));
     if (!report.failure.empty()) text += "<p><strong>" + escaped(report.failure) + "</strong></p>\n";
-    for (const Rows& rows : {errors(report), costs(report), limits(report)})
+    for (const Rows& rows : {errors(report), means(report), costs(report), limits(report)})
       if (!rows.empty()) text += html_table(rows);
     for (const auto& [name, svg] : report.pictures)
       text += svg.substr(std::min(svg.find("<svg"), svg.size())) + "\n";

@@ -19,6 +19,7 @@ struct CaseReport {
   std::string plugins;                                        ///< of the plan: "fluid 0.1.0 vtk 0.1.0"
   std::string plan;                                           ///< the text of shoal plan
   std::vector<std::vector<std::string>> table;                ///< study.csv; its first row names the columns
+  std::vector<std::vector<std::string>> means;                ///< ensemble.csv, if the case has an ensemble
   std::vector<std::vector<std::string>> limits;               ///< limits.csv, if they were looked for
   std::vector<std::pair<std::string, std::string>> pictures;  ///< name and SVG
   std::string failure;                                        ///< why there is no table

@@ -128,6 +128,8 @@ void study(const Options& options, const std::filesystem::path& results, CaseRep
                                  code == exit_physics_failed ? "a run failed" : "see " + log.string());
   if (!std::filesystem::exists(results / "study.csv")) return;
   report.table = read_csv(read_whole_file(results / "study.csv"));
+  if (std::filesystem::exists(results / "ensemble.csv"))
+    report.means = read_csv(read_whole_file(results / "ensemble.csv"));
   if (options.limits && std::filesystem::exists(results / "limits.csv"))
     report.limits = read_csv(read_whole_file(results / "limits.csv"));
   for (const char* picture : {"error_against_spacing", "error_against_time"}) {

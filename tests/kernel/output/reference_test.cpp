@@ -99,6 +99,31 @@ TEST_CASE("amplitude: half the difference between the largest and the least valu
   CHECK(std::isnan(compare(specification, Series{}, true).error));
 }
 
+TEST_CASE("an ensemble: the mean over runs, point by point, and how far one run is from it") {
+  // At 2 and 4: 3 and 9, and 7 and 11; in the mean 5 and 10.
+  const std::vector<Series> runs{{{0, 2, 4}, {0, 3, 9}}, {{0, 1, 2, 4}, {0, 1, 7, 11}}};
+  ReferenceSpecification specification = against("2,4\n4,10\n", ErrorMeasure::rms);
+  specification.tolerance = 0.05;
+  const EnsembleResult strict = compare_ensemble(specification, runs);
+  CHECK(strict.error == doctest::Approx(std::sqrt(1.0 / 2.0) / 10.0));
+  CHECK(strict.deviation == doctest::Approx(std::sqrt((4.0 + 4.0 + 1.0 + 1.0) / 2.0) / 10.0));
+  CHECK(strict.verdict == Verdict::fail);
+  specification.mean_tolerance = 0.08;
+  CHECK(compare_ensemble(specification, runs).verdict == Verdict::pass);
+  CHECK(compare_ensemble(specification, runs).tolerance == 0.08);
+  CHECK(compare(specification, runs[0], true).tolerance == 0.05);
+  // A value that one run lacks is left out, and one run alone has no deviation.
+  const std::vector<Series> short_run{runs[0], {{0, 2}, {0, 7}}};
+  CHECK(compare_ensemble(specification, short_run).error == doctest::Approx(1.0 / 4.0));
+  CHECK(std::isnan(compare_ensemble(specification, {runs[0]}).deviation));
+  CHECK(compare_ensemble(specification, {}).verdict == Verdict::fail);
+  CHECK(compare_ensemble_files(specification, {"no_such.csv"}).remark != "");
+  // Errors of single runs do not cancel in their mean; what they measure does: peaks of 9 and 11 against 10.
+  const EnsembleResult peaks = compare_ensemble(against("0,10\n", ErrorMeasure::peak), runs);
+  CHECK(peaks.error == doctest::Approx(0.0));
+  CHECK(peaks.deviation == doctest::Approx(std::sqrt(2.0) / 10.0));
+}
+
 TEST_CASE("names of measures") {
   CHECK(error_measure("final") == ErrorMeasure::last);
   CHECK(error_measure("relative_rms") == ErrorMeasure::relative_rms);
