@@ -68,7 +68,7 @@ void NeighbourGrid::build_in(Positions positions) {
   choose_axes();
   choose_cells(positions);
   cell_start_.reserve(n_cells_ + 2);
-  if (use_threads(n_))
+  if (n_ > sort_chunk && use_threads(n_))
     sort_parallel<D>(positions);
   else
     sort_serial<D>(positions);

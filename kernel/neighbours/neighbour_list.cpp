@@ -2,14 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "kernel/neighbours/neighbour_list.hpp"
 
-#include <tbb/parallel_pipeline.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <shared_mutex>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "kernel/neighbours/row_scan.hpp"
@@ -45,8 +47,8 @@ struct RowWriter {
 
 // What one task of the parallel build works on.
 struct NeighbourList::Block {
-  std::size_t first = 0, last = 0;
-  std::uint64_t base = 0, pairs = 0;
+  std::size_t number = 0, first = 0, last = 0;
+  std::uint64_t pairs = 0;
   AlignedBuffer<std::uint32_t> rows;
   std::size_t used = 0;
 };
@@ -160,68 +162,72 @@ void NeighbourList::build_serial(const FillRows& fill_rows) {
   offsets_[n_rows_] = writer.used;
 }
 
-// Blocks of rows are filled in any order into memory of their own, get their place in the order of the rows, and are
-// copied there: one pass, no gaps, and offsets that do not depend on the threads. The copy costs little, since a
-// block's rows are still in the cache of the core that made them.
+// Threads take blocks of rows in order, fill them in memory of their own, give them their place behind the block before
+// when that has one, and copy them there: one pass, no gaps, and offsets that do not depend on the threads. The copy costs
+// little, since a block's rows are still in the cache of the core that made them. A thread whose block comes too early
+// keeps it and fills another one before it waits.
 template <class FillRows>
 void NeighbourList::build_parallel(const FillRows& fill_rows) {
   const std::size_t n_blocks = (n_rows_ + block_rows - 1) / block_rows;
-  std::vector<Block> blocks(4 * available_threads());
-  std::vector<Block*> idle;
-  for (Block& block : blocks) idle.push_back(&block);
   const std::size_t usual =
       indices_.capacity() / n_rows_ * block_rows;  // of the last build, or of the sample
-  std::mutex idle_mutex;
   std::shared_mutex growth;
-  std::size_t next = 0;
-  std::uint64_t total = 0;
+  std::atomic<std::size_t> next = 0, placed = 0;  // blocks
+  std::atomic<bool> failed = false;               // by lack of memory
+  std::uint64_t total = 0;  // entries of those placed; this and n_pairs_ belong to whose turn it is
   n_pairs_ = 0;
 
-  const auto hand_out = [&](tbb::flow_control& control) -> Block* {
-    if (next == n_blocks) {
-      control.stop();
-      return nullptr;
-    }
-    const std::lock_guard lock(idle_mutex);
-    Block* block = idle.back();
-    idle.pop_back();
-    block->first = next * block_rows;
-    block->last = std::min(n_rows_, block->first + block_rows);
-    ++next;
-    return block;
-  };
-  const auto fill = [&](Block* block) {
-    block->rows.reserve(usual + usual / 4);
-    RowWriter writer{block->rows};
-    block->pairs = fill_rows(block->first, block->last, writer);
-    block->used = writer.used;
-    return block;
-  };
-  const auto give_place = [&](Block* block) {
-    block->base = total;
-    total += block->used;
-    n_pairs_ += block->pairs;
+  const auto give_place = [&](Block& block) {
+    const std::uint64_t base = total;
+    total += block.used;
+    n_pairs_ += block.pairs;
     if (total > indices_.capacity()) {
       const std::unique_lock lock(growth);
-      indices_.reserve(total, block->base);
+      indices_.reserve(total, base);
     }
-    return block;
+    placed.store(block.number + 1, std::memory_order_release);
+    const std::shared_lock lock(growth);
+    std::copy_n(block.rows.data(), block.used, indices_.data() + base);
+    for (std::size_t i = block.first; i < block.last; ++i) offsets_[i] += base;
   };
-  const auto copy = [&](Block* block) {
-    {
-      const std::shared_lock lock(growth);
-      std::copy_n(block->rows.data(), block->used, indices_.data() + block->base);
+  const auto fill_blocks = [&] {
+    std::array<Block, 2> blocks;
+    std::size_t filled = 0, gone = 0;  // of this thread, in order
+    const auto oldest = [&]() -> Block& { return blocks[gone % blocks.size()]; };
+    for (;;) {
+      while (gone < filled && placed.load(std::memory_order_acquire) == oldest().number) {
+        give_place(oldest());
+        ++gone;
+      }
+      const bool full = filled - gone == blocks.size();
+      const std::size_t number = full ? n_blocks : next.fetch_add(1, std::memory_order_relaxed);
+      if (number < n_blocks) {
+        Block& block = blocks[filled++ % blocks.size()];
+        block.number = number;
+        block.first = number * block_rows;
+        block.last = std::min(n_rows_, block.first + block_rows);
+        block.rows.reserve(usual + usual / 4);
+        RowWriter writer{block.rows};
+        block.pairs = fill_rows(block.first, block.last, writer);
+        block.used = writer.used;
+      } else if (gone == filled || failed.load(std::memory_order_relaxed)) {
+        return;
+      } else {
+        std::this_thread::yield();
+      }
     }
-    for (std::size_t i = block->first; i < block->last; ++i) offsets_[i] += block->base;
-    const std::lock_guard lock(idle_mutex);
-    idle.push_back(block);
   };
-  using tbb::filter_mode;
-  tbb::parallel_pipeline(blocks.size(),
-                         tbb::make_filter<void, Block*>(filter_mode::serial_in_order, hand_out) &
-                             tbb::make_filter<Block*, Block*>(filter_mode::parallel, fill) &
-                             tbb::make_filter<Block*, Block*>(filter_mode::serial_in_order, give_place) &
-                             tbb::make_filter<Block*, void>(filter_mode::parallel, copy));
+  tbb::parallel_for(
+      std::size_t{0}, std::min(available_threads(), n_blocks),
+      [&](std::size_t) {
+        try {
+          fill_blocks();
+        } catch (...) {
+          failed = true;
+          throw;
+        }
+      },
+      tbb::static_partitioner{});
   offsets_[n_rows_] = total;
 }
 

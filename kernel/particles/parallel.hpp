@@ -5,12 +5,15 @@
 // the calling thread: waking others costs more than a few thousand particles do.
 #pragma once
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
+#include <vector>
+
+#include "kernel/neighbours/threads.hpp"
 
 namespace shoal::kernel {
 
@@ -24,6 +27,36 @@ inline constexpr std::uint64_t worth_threads = 12'000;  ///< of one call, ns
 
 constexpr std::uint64_t n_chunks(std::uint64_t n) { return (n + chunk_size - 1) / chunk_size; }
 
+/// piece(k) for k = 0 ... n - 1, on all threads. Each has a share of neighbouring pieces, the same in each loop, so that
+/// what they hold stays in its cache; one that is done takes pieces of others, since they take unequal times (there is
+/// more to do at walls, less at surfaces and in spray), and so do cores on which other programs run.
+template <class Piece>
+void for_each_piece(std::uint64_t n, const Piece& piece) {
+  struct alignas(64) Share {
+    std::atomic<std::uint64_t> next;
+    std::uint64_t end;
+  };
+  const std::uint64_t threads = std::min<std::uint64_t>(available_threads(), n);
+  std::vector<Share> shares(threads);
+  for (std::uint64_t k = 0; k < threads; ++k) {
+    shares[k].next.store(k * n / threads, std::memory_order_relaxed);
+    shares[k].end = (k + 1) * n / threads;
+  }
+  tbb::parallel_for(
+      std::uint64_t{0}, threads,
+      [&](std::uint64_t thread) {
+        for (std::uint64_t k = 0; k < threads; ++k) {
+          Share& share = shares[(thread + k) % threads];
+          for (;;) {
+            const std::uint64_t next = share.next.fetch_add(1, std::memory_order_relaxed);
+            if (next >= share.end) break;
+            piece(next);
+          }
+        }
+      },
+      tbb::static_partitioner{});
+}
+
 /// function(begin, end) for pieces of 0..n that are multiples of SHOAL_PADDING but for the last one.
 template <class Function>
 void for_each_range(std::uint64_t n, const Function& function) {
@@ -32,12 +65,8 @@ void for_each_range(std::uint64_t n, const Function& function) {
     return;
   }
   constexpr std::uint64_t piece = 2048;
-  tbb::parallel_for(
-      tbb::blocked_range<std::uint64_t>(0, (n + piece - 1) / piece),
-      [&](const tbb::blocked_range<std::uint64_t>& range) {
-        function(range.begin() * piece, std::min(n, range.end() * piece));
-      },
-      tbb::static_partitioner{});
+  for_each_piece((n + piece - 1) / piece,
+                 [&](std::uint64_t k) { function(k * piece, std::min(n, (k + 1) * piece)); });
 }
 
 }  // namespace shoal::kernel

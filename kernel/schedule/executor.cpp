@@ -75,9 +75,17 @@ bool pays_on_threads(const OperatorRun& op, std::uint64_t n) {
   return n >= serial_below || (op.calls > 0 && op.ticks / op.calls >= worth_threads);
 }
 
+enum class Threads { one, all, all_shared };
+// Sums over pairs take unequal times; where little is done with each particle, it costs more to fetch those of other
+// threads than to wait.
+Threads threads_for(const OperatorRun& op, std::uint64_t n, bool pairs) {
+  if (!pays_on_threads(op, n)) return Threads::one;
+  return pairs ? Threads::all_shared : Threads::all;
+}
+
 // function(chunk) for chunks of 128 particles.
 template <class Function>
-void for_each_chunk(std::uint64_t n, bool on_threads, double* partials, std::size_t stride,
+void for_each_chunk(std::uint64_t n, Threads threads, double* partials, std::size_t stride,
                     const Function& function) {
   const auto one = [&](std::uint64_t number) {
     shoal_chunk chunk;
@@ -89,10 +97,11 @@ void for_each_chunk(std::uint64_t n, bool on_threads, double* partials, std::siz
     function(chunk);
   };
   const std::uint64_t chunks = n_chunks(n);
-  if (!on_threads) {
+  if (threads == Threads::one) {
     for (std::uint64_t k = 0; k < chunks; ++k) one(k);
     return;
   }
+  if (threads == Threads::all_shared) return for_each_piece(chunks, one);
   tbb::parallel_for(
       tbb::blocked_range<std::uint64_t>(0, chunks),
       [&](const tbb::blocked_range<std::uint64_t>& range) {
@@ -277,7 +286,7 @@ void Executor::run_chunks(OperatorRun& op, const shoal_step& step) {
     for (std::size_t r = 0; r < n_reductions; ++r)
       op.partials[k * n_reductions + r] = identity(op.attachment.reductions[r]);
 
-  const auto call_with_chunks = [&](const char* name, auto callback) {
+  const auto call_with_chunks = [&](const char* name, auto callback, bool pairs) {
     Failure failure;
     const auto one = [&](const shoal_chunk& chunk) {
       if (failure.happened()) return;
@@ -292,12 +301,12 @@ void Executor::run_chunks(OperatorRun& op, const shoal_step& step) {
       chunk.partial = op.partials.data();
       one(chunk);
     } else {
-      for_each_chunk(n, pays_on_threads(op, n), op.partials.data(), n_reductions, one);
+      for_each_chunk(n, threads_for(op, n, pairs), op.partials.data(), n_reductions, one);
     }
     if (failure.happened()) fail(op, name, failure.status(), failure.text(), &step);
   };
-  if (op.c().prepare != nullptr) call_with_chunks("prepare", op.c().prepare);
-  call_with_chunks("run", op.c().run);
+  if (op.c().prepare != nullptr) call_with_chunks("prepare", op.c().prepare, false);
+  call_with_chunks("run", op.c().run, op.pairs_per_call > 0);
   reduce(op, chunks);
 }
 
@@ -338,10 +347,11 @@ double Executor::time_step(OperatorRun& op, const shoal_step& step) {
     const std::uint64_t n = op.body->n_owned();
     const std::size_t stride = std::max<std::size_t>(op.attachment.reductions.size(), 1);
     double* partials = op.partials.data();
-    for_each_chunk(n, n >= serial_below, partials, stride, [&](const shoal_chunk& chunk) {
-      const double limit_here = op.c().time_step(op.c().self, &step, &chunk);
-      chunk.partial[0] = limit_here;
-    });
+    for_each_chunk(n, n >= serial_below ? Threads::all : Threads::one, partials, stride,
+                   [&](const shoal_chunk& chunk) {
+                     const double limit_here = op.c().time_step(op.c().self, &step, &chunk);
+                     chunk.partial[0] = limit_here;
+                   });
     // A minimum does not depend on its order, but for NaN, which must win.
     for (std::uint64_t k = 0; k < n_chunks(n); ++k)
       limit = combine(SHOAL_MINIMUM, limit, partials[k * stride]);

@@ -116,6 +116,36 @@ TEST_CASE("the sum of all lanes is in double precision") {
   CHECK(horizontal_sum(a.pack()) == doctest::Approx(sum).epsilon(1e-14));
 }
 
+TEST_CASE("sums of several packs are summed together, of four lanes in single precision") {
+  SinglePack packs[7];
+  double sums[7];
+  std::vector<Lanes> lanes_of;
+  for (unsigned k = 0; k < 7; ++k) {
+    lanes_of.emplace_back(30 + k);
+    packs[k] = lanes_of[k].pack();
+  }
+  const auto check = [&](int n) {
+    for (int k = 0; k < n; ++k) {
+      double exact = 0, largest = 0;
+      for (const float x : lanes_of[static_cast<std::size_t>(k)].x) {
+        exact += static_cast<double>(x);
+        largest += std::abs(static_cast<double>(x));
+      }
+      CHECK(std::abs(sums[k] - exact) <= 1.2e-7 * largest);
+      // Each by itself is the same as among others.
+      double alone = 0;
+      horizontal_sums<1>(packs + k, &alone);
+      CHECK(alone == sums[k]);
+    }
+  };
+  horizontal_sums<7>(packs, sums);
+  check(7);
+  horizontal_sums<4>(packs, sums);
+  check(4);
+  horizontal_sums<2>(packs, sums);
+  check(2);
+}
+
 TEST_CASE("the first lanes are those below n, none and all at the ends") {
   for (std::int64_t n = -2; n <= single_lanes + 2; ++n)
     for (int k = 0; k < single_lanes; ++k) CHECK(first_single_lanes(n)[k] == (k < n));

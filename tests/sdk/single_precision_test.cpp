@@ -120,6 +120,25 @@ TEST_CASE("neighbours of several bodies count, and rows of any length") {
   CHECK(lonely["sum"][0] == 0.0);
 }
 
+TEST_CASE("records that hold zeros only, and those of the particle itself, change nothing") {
+  testing::Body body = cloud(0.1, 0.0), other = cloud(0.1, 0.05, 7);
+  const testing::Setup setup{.smoothing_length = 0.13};
+  compare(body, {&other, &body}, setup);
+  compare(body, {&other}, setup);
+  // Velocity and pressure share a record.
+  for (double& v : other["velocity"]) v = 0.0;
+  compare(body, {&other, &body}, setup);
+  for (double& p : other["pressure"]) p = 0.0;
+  compare(body, {&body, &other}, setup);
+  other["pressure"].back() = 2.0;
+  compare(body, {&body, &other}, setup);
+  other["velocity"].back() = std::nan("");
+  Everything op;
+  op.single = std::make_shared<SinglePrecision>();
+  testing::run(op, body, {&other}, setup);
+  CHECK(std::isnan(body["sum"].back()));
+}
+
 TEST_CASE("coincident particles give no NaN, a NaN among the coordinates does") {
   testing::Body body = cloud(0.1, 0.0);
   for (std::size_t a = 0; a < 3; ++a) body["position"][a] = body["position"][3 + a];

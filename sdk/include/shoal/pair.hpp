@@ -125,9 +125,11 @@ class PairFields {
 template <int D, class R>
 class PairVector {
  public:
+  PairVector() = default;
   explicit PairVector(const Vec<D, R>& r_ij) : r_ij_(r_ij) {
-    // Coincident particles have no direction: the limit makes e = 0 there, not NaN.
-    const R squared = max(R(std::is_same_v<R, SinglePack> ? 1e-36 : 1e-200), squared_norm(r_ij_));
+    // Coincident particles have no direction: what is added, nothing to others, makes e = 0 there, not NaN.
+    R squared = std::is_same_v<R, SinglePack> ? 1e-36 : 1e-200;
+    for (int a = 0; a < D; ++a) squared += r_ij_[a] * r_ij_[a];
     if constexpr (simd::fast_inverse_sqrt && !std::is_same_v<R, double>) {
       per_r_ = inverse_sqrt(squared);
       r_ = squared * per_r_;
@@ -221,7 +223,13 @@ class SinglePair : public SinglePairFields<D, Particle<D>, View>, public PairVec
   // The particle's own record, with its geometry.
   struct Own : pair_loop::OwnRecord<View, Particle<D>> {
     SinglePack geometry[4];
-    Own(const View& view, Particle<D> i) : pair_loop::OwnRecord<View, Particle<D>>(view, i) {}
+    SinglePack
+        volume;  // times h^(D - 2) over h^D: V_i V_j (dW/dr)/r = volume * (V_j/h^D) * (dW/dr)/r of h = 1
+    using pair_loop::OwnRecord<View, Particle<D>>::read;
+    void read(const View& view, Particle<D> i) {
+      pair_loop::OwnRecord<View, Particle<D>>::read(view, i);
+      view.own_geometry(i.index, geometry);
+    }
   };
   struct Scales {
     double unit;                         // of positions, m
@@ -229,9 +237,32 @@ class SinglePair : public SinglePairFields<D, Particle<D>, View>, public PairVec
     const Field<Scalar, false>* volume;  // nullptr: not asked for
   };
 
+  // Distances, and the volume of the neighbours over h^D. It is found for several packs before what follows from it: that
+  // depends on it through a long chain of operations, of which the processor has several under way then.
+  class Geometry : public PairVector<D, SinglePack> {
+   public:
+    Geometry() = default;
+    Geometry(const View& view, const Scales& scales, const Own& own, SingleIndexPack j)
+        : Geometry(scales.unit, own.geometry, Record(view, j)) {}
+    SinglePack volume;
+
+   private:
+    struct Record {
+      SinglePack geometry[4];
+      Record(const View& view, SingleIndexPack j) { view.gather_geometry(j, geometry); }
+    };
+    Geometry(double unit, const SinglePack* own, const Record& record)
+        : PairVector<D, SinglePack>(distance(unit, own, record.geometry)), volume(record.geometry[3]) {}
+  };
+
   SinglePair(const Kernel& unit_kernel, const View& view, const Scales& scales, const Own& own,
-             SingleIndexPack j)
-      : SinglePair(unit_kernel, view, scales, own, j, Record(view, j)) {}
+             SingleIndexPack j, const Geometry& geometry)
+      : SinglePairFields<D, Particle<D>, View>(view, own, j),
+        PairVector<D, SinglePack>(geometry),
+        unit_kernel_(unit_kernel),
+        scales_(scales),
+        own_volume_(own.volume),
+        volume_(geometry.volume) {}
 
   template <class T, bool Writable>
   auto j(const Field<T, Writable>& field) const {
@@ -249,24 +280,10 @@ class SinglePair : public SinglePairFields<D, Particle<D>, View>, public PairVec
   double h() const { return scales_.h; }
   template <class Volume>
   SinglePack weight(const Volume&) const {
-    const double scale = D == 2 ? 1.0 : scales_.h;  // h^2D / h^(D + 2)
-    return (own_volume_ * volume_) * (scale * unit_kernel_.dw_over_r(q()));
+    return (own_volume_ * volume_) * unit_kernel_.dw_over_r(q());
   }
 
  private:
-  struct Record {
-    SinglePack geometry[4];
-    Record(const View& view, SingleIndexPack j) { view.gather_geometry(j, geometry); }
-  };
-  SinglePair(const Kernel& unit_kernel, const View& view, const Scales& scales, const Own& own,
-             SingleIndexPack j, const Record& record)
-      : SinglePairFields<D, Particle<D>, View>(view, own, j),
-        PairVector<D, SinglePack>(distance(scales.unit, own.geometry, record.geometry)),
-        unit_kernel_(unit_kernel),
-        scales_(scales),
-        own_volume_(own.geometry[3]),
-        volume_(record.geometry[3]) {}
-
   static Vec<D, SinglePack> distance(double unit, const SinglePack* x_i, const SinglePack* x_j) {
     Vec<D, SinglePack> r_ij;
     for (int a = 0; a < D; ++a)
@@ -278,7 +295,8 @@ class SinglePair : public SinglePairFields<D, Particle<D>, View>, public PairVec
 
   const Kernel& unit_kernel_;
   const Scales& scales_;
-  SinglePack own_volume_, volume_;  // over h^D
+  SinglePack own_volume_;  // Own::volume
+  SinglePack volume_;      // over h^D
 };
 
 // Pairs of frozen geometry, of `single_lanes` particles with a neighbour each.

@@ -113,13 +113,39 @@ class Lanes {
   alignas(64) double values_[numbers<T> * RealTraits<typename Numbers<T>::Number>::lanes];
 };
 
+// A result with the sums over the lanes of its numbers.
+template <class T>
+struct OverLanes {
+  using Type = decltype(horizontal_sum(std::declval<T>()));
+  static Type of(const T& sum) { return horizontal_sum(sum); }
+};
+template <class... Values>
+struct OverLanes<Sums<Values...>> {
+  using Type = Sums<typename OverLanes<Values>::Type...>;
+  static Type of(const Sums<Values...>& sum) {
+    return std::apply([](const auto&... value) { return Type{{horizontal_sum(value)...}}; }, sum.values);
+  }
+};
+template <class T>
+auto over_lanes(const T& sum) {
+  if constexpr (std::is_same_v<typename Numbers<T>::Number, SinglePack>) {
+    SinglePack packs[numbers<T>];
+    double totals[numbers<T>];
+    put(sum, packs);
+    horizontal_sums<numbers<T>>(packs, totals);
+    return Reader<typename OverLanes<T>::Type>::get(totals);
+  } else {
+    return OverLanes<T>::of(sum);
+  }
+}
+
 template <class Op, int D, class Sum>
 void finish_particle(const Op& op, Particle<D> i, const Sum& sum) {
-  op.particle(i, horizontal_sum(sum));
-}
-template <class Op, int D, class... Values>
-void finish_particle(const Op& op, Particle<D> i, const Sums<Values...>& sum) {
-  std::apply([&](const auto&... value) { op.particle(i, horizontal_sum(value)...); }, sum.values);
+  const auto total = over_lanes(sum);
+  if constexpr (requires { total.values; })
+    std::apply([&](const auto&... value) { op.particle(i, value...); }, total.values);
+  else
+    op.particle(i, total);
 }
 
 }  // namespace pair_loop
@@ -394,15 +420,23 @@ class PairOperator : public OperatorBase {
     const SingleRecords& records = self().single->records;
     const typename P::Scales scales{position_unit(), smoothing_length(), volume_field()};
     const double per_volume = detail::per_volume<D>(scales.h), per_unit = 1.0 / scales.unit;
+    // Then the particle has a record itself, as long as it is among those that they were made for.
+    const bool among_neighbours = position_.of_neighbours(0) == position_.data();
     for_rows(chunk, [&](std::uint64_t index) {
       const Particle<D> particle{index, chunk.partial};
-      typename P::Own i(records.template view<D>(0, fields), particle);
-      for (int a = 0; a < D; ++a)
-        i.geometry[a] = SinglePack::from_raw(
-            simd::single::broadcast(pair_loop::whole_number(position_[particle][a], per_unit)));
-      // Where volumes are read of neighbours only (walls), or not at all, nobody asks for weights of both.
-      const bool known = scales.volume != nullptr && scales.volume->data() != nullptr;
-      i.geometry[3] = known ? (*scales.volume)[particle] * per_volume : 0.0;
+      typename P::Own i;
+      if (among_neighbours) {
+        i.read(records.template view<D>(0, fields), particle);
+      } else {
+        i.read(fields, particle);
+        for (int a = 0; a < D; ++a)
+          i.geometry[a] = SinglePack::from_raw(
+              simd::single::broadcast(pair_loop::whole_number(position_[particle][a], per_unit)));
+        // Where volumes are read of neighbours only (walls), or not at all, nobody asks for weights of both.
+        const bool known = scales.volume != nullptr && scales.volume->data() != nullptr;
+        i.geometry[3] = known ? (*scales.volume)[particle] * per_volume : 0.0;
+      }
+      i.volume = (D == 2 ? 1.0 : scales.h) * i.geometry[3];
       Result sum{};
       for (std::size_t k = 0; k < n_relations(); ++k) {
         const View view = records.template view<D>(k, fields);
@@ -411,10 +445,18 @@ class PairOperator : public OperatorBase {
         const std::uint32_t* row = list.indices + list.offsets[index];
         // Rows are padded for a pack, not for a single pack: its upper lanes read the last ones again then.
         const std::uint32_t last = (n + lanes - 1) / lanes * lanes - lanes;
-        for (std::uint32_t m = 0; m < n; m += single_lanes) {
-          const SingleIndexPack j{row + m, row + std::min<std::uint32_t>(m + lanes, last)};
-          pair_loop::add_lanes(sum, self().pair(P(unit_kernel, view, scales, i, j)),
-                               first_single_lanes(n - m));
+        const auto pack_at = [&](std::uint32_t m) {
+          return SingleIndexPack{row + m, row + std::min<std::uint32_t>(m + lanes, last)};
+        };
+        constexpr std::uint32_t at_a_time = 8;
+        for (std::uint32_t first = 0; first < n; first += at_a_time * single_lanes) {
+          typename P::Geometry geometry[at_a_time];
+          const std::uint32_t end = std::min(n, first + at_a_time * single_lanes);
+          for (std::uint32_t m = first, c = 0; m < end; m += single_lanes, ++c)
+            geometry[c] = typename P::Geometry(view, scales, i, pack_at(m));
+          for (std::uint32_t m = first, c = 0; m < end; m += single_lanes, ++c)
+            pair_loop::add_lanes(sum, self().pair(P(unit_kernel, view, scales, i, pack_at(m), geometry[c])),
+                                 first_single_lanes(n - m));
         }
       }
       pair_loop::finish_particle(self(), particle, sum);
@@ -435,8 +477,8 @@ class PairOperator : public OperatorBase {
     for (std::uint64_t group = geometry.first_group(chunk.begin); group < end; ++group) {
       const std::uint64_t first = group * single_lanes;
       const int n = geometry.rows_in(group);
-      const typename P::Own i(records.template view<D>(0, fields),
-                              {first, n > lanes ? first + lanes : first});
+      typename P::Own i;
+      i.read(fields, {first, n > lanes ? first + lanes : first});
       Result sum{};
       for (std::size_t k = 0; k < n_relations(); ++k) {
         const View view = records.template view<D>(k, fields);

@@ -62,9 +62,10 @@ inline void put(const SinglePack& value, double* place) {
   value.low().store(place);
   value.high().store(place + lanes);
 }
-template <class T>
-requires(std::is_class_v<T> && !detail::is_pack<T>) void put(const T& value, double* place) {
-  constexpr int width = RealTraits<typename Numbers<T>::Number>::lanes;
+inline void put(const SinglePack& value, SinglePack* place) { *place = value; }
+template <class T, class Place>
+requires(std::is_class_v<T> && !detail::is_pack<T>) void put(const T& value, Place* place) {
+  constexpr int width = std::is_same_v<Place, double> ? RealTraits<typename Numbers<T>::Number>::lanes : 1;
   if constexpr (requires { value.values; })
     std::apply(
         [&](const auto&... part) {

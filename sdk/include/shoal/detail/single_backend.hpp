@@ -96,6 +96,21 @@ inline void gather_four(const float* base, const std::uint32_t* first, const std
   out[3] = _mm512_castpd_ps(_mm512_maskz_unpackhi_pd(0xFF, ab23, cd23));
 }
 
+// The sums over the lanes of four packs: over four neighbouring lanes, (0 + 2) + (1 + 3), in single precision, over what
+// is left in double precision.
+inline void sum_of_four(const Raw* four, double* out) {
+  const Raw ab = _mm512_maskz_unpacklo_ps(full_mask, four[0], four[1]) +
+                 _mm512_maskz_unpackhi_ps(full_mask, four[0], four[1]);
+  const Raw cd = _mm512_maskz_unpacklo_ps(full_mask, four[2], four[3]) +
+                 _mm512_maskz_unpackhi_ps(full_mask, four[2], four[3]);
+  const __m512d x = _mm512_castps_pd(ab), y = _mm512_castps_pd(cd);
+  const Raw abcd = _mm512_castpd_ps(_mm512_maskz_unpacklo_pd(0xFF, x, y)) +
+                   _mm512_castpd_ps(_mm512_maskz_unpackhi_pd(0xFF, x, y));
+  const __m512d halves = low(abcd) + high(abcd);
+  _mm256_storeu_pd(out, __builtin_shufflevector(halves, halves, 0, 1, 2, 3) +
+                            __builtin_shufflevector(halves, halves, 4, 5, 6, 7));
+}
+
 #elif defined(__AVX__)
 
 using Raw = __m256;
@@ -156,6 +171,14 @@ inline void gather_four(const float* base, const std::uint32_t* first, const std
   out[1] = _mm256_castpd_ps(_mm256_unpackhi_pd(ab01, cd01));
   out[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(ab23, cd23));
   out[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(ab23, cd23));
+}
+
+inline void sum_of_four(const Raw* four, double* out) {
+  const Raw ab = _mm256_unpacklo_ps(four[0], four[1]) + _mm256_unpackhi_ps(four[0], four[1]);
+  const Raw cd = _mm256_unpacklo_ps(four[2], four[3]) + _mm256_unpackhi_ps(four[2], four[3]);
+  const __m256d x = _mm256_castps_pd(ab), y = _mm256_castps_pd(cd);
+  const Raw abcd = _mm256_castpd_ps(_mm256_unpacklo_pd(x, y)) + _mm256_castpd_ps(_mm256_unpackhi_pd(x, y));
+  _mm256_storeu_pd(out, low(abcd) + high(abcd));
 }
 
 #else  // two vectors of 16 bytes, as in pack_backend.hpp
@@ -261,6 +284,16 @@ inline void gather_four(const float* base, const std::uint32_t* first, const std
       const std::uint32_t j = k < lanes / 2 ? first[k] : second[k - lanes / 2];
       return base[std::size_t{j} * Stride + static_cast<std::size_t>(c)];
     });
+}
+
+inline void sum_of_four(const Raw* four, double* out) {
+  for (int k = 0; k < 4; ++k) {
+    const auto half = [&](int h) {
+      const Float4 x = four[k].half[h];
+      return static_cast<double>((x[0] + x[2]) + (x[1] + x[3]));
+    };
+    out[k] = half(0) + half(1);
+  }
 }
 
 #endif

@@ -5,7 +5,8 @@
 // changed: records of four numbers, which are read in one piece and transposed.
 //
 //     geometry   position, volume / h^D; in 2D that of FrozenGeometry is read instead
-//     fields     those of Derived::neighbour_fields(), one behind the other; none stands in two records if it fits in one
+//     fields     those of Derived::neighbour_fields(), one behind the other; none stands in two records if it fits in one;
+//                records that hold zeros only (velocities of walls at rest) are not read
 //
 // Positions are whole numbers modulo 2^32 of a unit that is a small part of the cut-off: differences are exact, so their
 // error is the same everywhere in a domain of any size. A NaN or an infinity among the coordinates makes the volume NaN.
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -89,8 +91,9 @@ class RecordView {
  public:
   using Layout = typename LayoutOf<Fields, D>::type;
 
-  RecordView(const Fields& fields, std::size_t relation, const float* geometry, const float* records)
-      : fields_(fields), relation_(relation), geometry_(geometry), records_(records) {}
+  RecordView(const Fields& fields, std::size_t relation, const float* geometry, const float* records,
+             const char* in_use)
+      : fields_(fields), relation_(relation), geometry_(geometry), records_(records), in_use_(in_use) {}
 
   std::size_t relation() const { return relation_; }
   // x, y, z as whole numbers, and the volume over h^D.
@@ -119,14 +122,24 @@ class RecordView {
     (std::make_index_sequence<Layout::n>{});
   }
 
-  const Fields& fields() const { return fields_; }
+  // The numbers of one record, in all lanes.
+  void own_geometry(std::size_t i, SinglePack* out) const { spread<4>(geometry_ + 4 * i, out); }
+  void own(std::size_t i, SinglePack* out) const { spread<Layout::size>(records_ + Layout::size * i, out); }
 
  private:
+  template <int N>
+  static void spread(const float* record, SinglePack* out) {
+    for (int k = 0; k < N; ++k) out[k] = SinglePack::from_raw(simd::single::broadcast(record[k]));
+  }
+
   template <int N, int Place>
   void load(SingleIndexPack j, SinglePack* out) const {
     SinglePack record[4];
     for (int m = 0; m < N; m += 4) {
-      gather_four<Layout::size>(records_ + Place / 4 * 4 + m, j, record);
+      if (in_use_[Place / 4 + m / 4] != 0)
+        gather_four<Layout::size>(records_ + Place / 4 * 4 + m, j, record);
+      else
+        std::fill_n(record, 4, SinglePack(0.0));
       for (int c = 0; c < 4 && m + c < N; ++c) out[m + c] = record[Place % 4 + c];
     }
   }
@@ -134,6 +147,7 @@ class RecordView {
   const Fields& fields_;
   std::size_t relation_;
   const float *geometry_, *records_;
+  const char* in_use_;  // [record] whether it is more than zeros
 };
 
 // The N own numbers of a field: of one particle the same in each lane.
@@ -151,16 +165,23 @@ struct OwnRecord {
   Own i;
   SinglePack values[std::max(View::Layout::size, 1)];
 
-  OwnRecord(const View& view, Own own) : i(own) {
+  template <class Fields>
+  void read(const Fields& fields, Own own) {
+    i = own;
     [&]<std::size_t... k>(std::index_sequence<k...>) {
-      (read<View::Layout::places[k]>(std::get<k>(view.fields())), ...);
+      (read_field<View::Layout::places[k]>(std::get<k>(fields)), ...);
     }
     (std::make_index_sequence<View::Layout::n>{});
+  }
+  // The same from the record that the particle has as a neighbour of others.
+  void read(const View& view, Own own) {
+    i = own;
+    view.own(own.index, values);
   }
 
  private:
   template <int Place, class T, bool Writable>
-  void read(const Field<T, Writable>& field) {
+  void read_field(const Field<T, Writable>& field) {
     read_own<field_numbers<T, Own::dimensions>>(field, i, values + Place);
   }
 };
@@ -175,6 +196,8 @@ class SingleRecords {
     if (relations_.size() <= relation) relations_.resize(relation + 1);
     if (dimensions == 3) grow(relations_[relation].geometry, n_particles * 4);
     grow(relations_[relation].fields, n_particles * static_cast<std::uint64_t>(floats_per_particle));
+    std::vector<char>& in_use = relations_[relation].in_use;
+    in_use.resize(std::max(in_use.size(), static_cast<std::size_t>(floats_per_particle / 4)));
   }
 
   // [main] Of so many bytes a particle, those that go beyond what has been counted so far.
@@ -201,6 +224,7 @@ class SingleRecords {
     std::apply([&](const auto&... field) { (add(field), ...); }, fields);
     const bool stale = !counted || held != relations_[relation].held;
     relations_[relation].held = std::move(held);
+    if (stale) std::fill(relations_[relation].in_use.begin(), relations_[relation].in_use.end(), 0);
     return stale;
   }
 
@@ -220,12 +244,13 @@ class SingleRecords {
   template <int D, class Fields>
   pair_loop::RecordView<D, Fields> view(std::size_t relation, const Fields& fields) const {
     const Relation& r = relations_[relation];
-    return {fields, relation, r.geometry.data(), r.fields.data()};
+    return {fields, relation, r.geometry.data(), r.fields.data(), r.in_use.data()};
   }
 
  private:
   struct Relation {
     std::vector<float> geometry, fields;
+    std::vector<char> in_use;  // [record of the fields]
     std::vector<std::uint64_t> held;
   };
 
@@ -258,6 +283,14 @@ class SingleRecords {
     float* to = relations_[relation].fields.data() + Place;
     for (std::uint64_t j = begin; j < end; ++j)
       for (std::size_t c = 0; c < n; ++c) to[j * Size + c] = static_cast<float>(from[j * n + c]);
+    for (std::size_t m = 0; m < n; m += 4) {
+      const std::atomic_ref<char> in_use(relations_[relation].in_use[Place / 4 + m / 4]);
+      if (in_use.load(std::memory_order_relaxed) != 0) continue;
+      bool zeros = true;
+      for (std::uint64_t j = begin; j < end && zeros; ++j)
+        for (std::size_t c = m; c < std::min(n, m + 4); ++c) zeros = zeros && to[j * Size + c] == 0.0F;
+      if (!zeros) in_use.store(1, std::memory_order_relaxed);
+    }
   }
 
   std::vector<Relation> relations_;
