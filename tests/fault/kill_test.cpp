@@ -37,13 +37,13 @@ std::size_t n_checkpoints(const std::string& folder) {
 TEST_CASE("killed while it writes, a run can always go on and ends the same") {
   const std::string text = grains(
       "probes:\n  height: {mean: {of: position.y, body: pile}, every: 1 ms}\n"
-      "output:\n  - grains.tables: {every: 4 ms, pause: 1 ms}\n",
+      "output:\n  - grains.tables: {every: 4 ms, pause: 5 ms}\n",
       "bodies: [pile], damping: 0.5", "0.4, checkpoint_every: 3 ms");
   write("pile.yaml", text);
   REQUIRE(shoal({"run", "pile.yaml", "-o", "whole", "--force"}).code == 0);
   std::filesystem::remove_all("killed");
   std::mt19937 random(20240229);
-  // From before the first file to well into the run, wherever the machine is slow or fast.
+  // From before the first file to well into the run, wherever the machine is slow or fast: outputs alone pause for 0.5 s.
   std::uniform_int_distribution<int> milliseconds(5, 100);
   int kills = 0;
   bool finished = false;
