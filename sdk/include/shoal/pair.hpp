@@ -223,8 +223,8 @@ class SinglePair : public SinglePairFields<D, Particle<D>, View>, public PairVec
   // The particle's own record, with its geometry.
   struct Own : pair_loop::OwnRecord<View, Particle<D>> {
     SinglePack geometry[4];
-    SinglePack
-        volume;  // times h^(D - 2) over h^D: V_i V_j (dW/dr)/r = volume * (V_j/h^D) * (dW/dr)/r of h = 1
+    // Times h^(D - 2), so that V_i V_j (dW/dr)/r is it times V_j / h^D times (dW/dr)/r of h = 1.
+    SinglePack volume;
     using pair_loop::OwnRecord<View, Particle<D>>::read;
     void read(const View& view, Particle<D> i) {
       pair_loop::OwnRecord<View, Particle<D>>::read(view, i);

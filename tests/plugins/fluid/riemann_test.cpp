@@ -168,7 +168,9 @@ TEST_CASE("in single precision momentum is conserved to its rounding") {
         total[a] += force;
         size += std::abs(force);
       }
-    for (const double sum : total) CHECK(std::abs(sum) < 1e-8 * size);
+    // Sums of a particle are rounded to 6e-8 of their terms, in whatever order the compiler takes these; in all the errors
+    // cancel but for a part.
+    for (const double sum : total) CHECK(std::abs(sum) < 3e-8 * size);
   }
 }
 
