@@ -193,8 +193,8 @@ std::string study_plot(const Study& study) {
       "set logscale xy\nset format '%g'\nset grid\nset key outside bottom center horizontal\nset rmargin 6\n"
       "set title {} noenhanced\nset ylabel {} noenhanced\n",
       quoted(study.title), quoted(error_names(study)[study.chosen] + " error"));
-  return text + picture(all, "error_against_spacing", "spacing, m", 1, order_lines(study, all)) +
-         picture(all, "error_against_time", "wall time, s", 2, "");
+  if (study.refined) text += picture(all, "error_against_spacing", "spacing, m", 1, order_lines(study, all));
+  return text + picture(all, "error_against_time", "wall time, s", 2, "");
 }
 
 }  // namespace shoal::kernel::app

@@ -31,8 +31,8 @@ std::string study_csv(const Study& study);
 /// A value as it stands in a file of comma-separated values.
 std::string csv_cell(std::string text);
 
-/// A script of gnuplot that draws error_against_spacing and error_against_time (.svg and .png) in its own folder;
-/// empty if no run has the chosen error.
+/// A script of gnuplot that draws error_against_spacing, if spacings differ, and error_against_time (.svg and .png) in its
+/// own folder; empty if no run has the chosen error.
 std::string study_plot(const Study& study);
 
 }  // namespace shoal::kernel::app
