@@ -60,6 +60,7 @@ TEST_CASE("a study runs all combinations and finds the orders of known errors") 
     CHECK(table[k][column(table, "dx")] == std::array{"0.2", "0.1", "0.05"}[(k - 1) % 3]);
     CHECK(table[k][column(table, "status")] == "finished");
     CHECK(std::stod(table[k][error]) == doctest::Approx(std::pow(dx, power)));
+    CHECK(std::stod(table[k][column(table, "pairs_per_second [1/s]")]) > 1e4);
     if ((k - 1) % 3 == 0)
       CHECK(table[k][order].empty());
     else

@@ -10,12 +10,6 @@
 #include "kernel/app/text.hpp"
 
 namespace shoal::kernel::app {
-namespace {
-
-std::string number_cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
-
-}  // namespace
-
 std::string ensemble_table(const std::vector<std::string>& keys, const std::vector<EnsembleMean>& means) {
   std::vector<std::vector<std::string>> rows(1);
   for (const std::string& key : keys) rows[0].push_back(last_word(key));
@@ -40,8 +34,8 @@ std::string ensemble_csv(const std::vector<std::string>& keys, const std::vector
   for (const EnsembleMean& mean : means) {
     for (const std::string& value : mean.values) text += csv_cell(value) + ",";
     text += fmt::format("{},{},{},{},{},{}\n", csv_cell(mean.reference), mean.finished,
-                        number_cell(mean.result.error), mean.result.tolerance,
-                        number_cell(mean.result.deviation), name_of(mean.result.verdict));
+                        csv_number(mean.result.error), mean.result.tolerance,
+                        csv_number(mean.result.deviation), name_of(mean.result.verdict));
   }
   return text;
 }

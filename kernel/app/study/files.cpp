@@ -98,6 +98,8 @@ std::string csv_cell(std::string text) {
   return '"' + text + '"';
 }
 
+std::string csv_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+
 std::vector<std::string> error_names(const Study& study) {
   std::vector<std::string> names;
   if (const StudyResult* result = with_errors(study))
@@ -115,7 +117,7 @@ std::string study_table(const Study& study) {
   std::vector<std::vector<std::string>> rows(1);
   for (const Variation& variation : study.variations) rows[0].push_back(last_word(variation.key));
   const std::size_t left = rows[0].size() + 1;
-  for (const char* title : {"", "spacing", "particles", "wall time", "particle-steps/s", "memory"})
+  for (const char* title : {"", "spacing", "particles", "wall time", "particle-steps/s", "pairs/s", "memory"})
     rows[0].emplace_back(title);
   const std::vector<std::string> names = error_names(study);
   std::vector<std::vector<std::optional<double>>> orders;
@@ -134,6 +136,8 @@ std::string study_table(const Study& study) {
     row.push_back(known ? count_text(result.particles) : "");
     row.push_back(known ? duration_text(result.wall_seconds) : "");
     row.push_back(known ? significant(result.particle_steps_per_second, 3) : "");
+    row.push_back(std::isfinite(result.pairs_per_second) && known ? significant(result.pairs_per_second, 3)
+                                                                  : "");
     row.push_back(known ? bytes_text(static_cast<double>(result.peak_memory)) : "");
     for (std::size_t e = 0; e < names.size(); ++e) {
       const bool has = result.finished() && e < result.errors.size() && std::isfinite(result.errors[e].error);
@@ -149,7 +153,8 @@ std::string study_csv(const Study& study) {
   std::string text = "run";
   for (const Variation& variation : study.variations) text += "," + csv_cell(variation.key);
   text +=
-      ",status,spacing [m],particles,outer_steps,wall_time [s],particle_steps_per_second [1/s],peak_memory "
+      ",status,spacing [m],particles,outer_steps,wall_time [s],particle_steps_per_second "
+      "[1/s],pairs_per_second [1/s],peak_memory "
       "[byte],"
       "bytes_per_particle [byte]";
   const std::vector<std::string> names = error_names(study);
@@ -164,8 +169,9 @@ std::string study_csv(const Study& study) {
     const StudyResult& r = study.results[k];
     text += csv_cell(r.run.name);
     for (const std::string& value : r.run.values) text += "," + csv_cell(value);
-    text += fmt::format(",{},{},{},{},{},{},{},{}", csv_cell(r.status), r.spacing, r.particles, r.outer_steps,
-                        r.wall_seconds, r.particle_steps_per_second, r.peak_memory, r.bytes_per_particle);
+    text += fmt::format(",{},{},{},{},{},{},{},{},{}", csv_cell(r.status), r.spacing, r.particles,
+                        r.outer_steps, r.wall_seconds, r.particle_steps_per_second,
+                        csv_number(r.pairs_per_second), r.peak_memory, r.bytes_per_particle);
     for (std::size_t e = 0; e < names.size(); ++e) {
       const bool has = r.finished() && e < r.errors.size();  // what came before is another comparison
       text += has ? fmt::format(",{},{},", r.errors[e].error, r.errors[e].tolerance) : ",,,";

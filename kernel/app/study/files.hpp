@@ -30,6 +30,7 @@ std::string study_csv(const Study& study);
 
 /// A value as it stands in a file of comma-separated values.
 std::string csv_cell(std::string text);
+std::string csv_number(double value);  ///< empty where it is none
 
 /// A script of gnuplot that draws error_against_spacing, if spacings differ, and error_against_time (.svg and .png) in its
 /// own folder; empty if no run has the chosen error.

@@ -28,6 +28,17 @@ double smallest_spacing(const Json& bodies) {
   return std::isfinite(of_moving) ? of_moving : of_all;
 }
 
+double pairs_per_second(const Json& operators) {
+  double longest = 0.0, rate = std::numeric_limits<double>::quiet_NaN();
+  for (const Json& op : operators) {
+    const double pairs = number(op.at("pairs")), seconds = number(op.at("seconds"));
+    if (!(pairs > 0.0) || !(seconds > longest)) continue;
+    longest = seconds;
+    rate = pairs / seconds;
+  }
+  return rate;
+}
+
 void fill(StudyResult& result, const Json& summary) {
   result.status = summary.at("status").get<std::string>();
   result.why = summary.at("failure").get<std::string>();
@@ -39,6 +50,7 @@ void fill(StudyResult& result, const Json& summary) {
   const Json& cost = summary.at("cost");
   result.wall_seconds = number(cost.at("wall_seconds")) + number(cost.at("earlier_wall_seconds"));
   result.particle_steps_per_second = number(cost.at("particle_steps_per_second"));
+  result.pairs_per_second = pairs_per_second(summary.at("operators"));
   result.peak_memory = cost.at("peak_memory_bytes").get<std::uint64_t>();
   result.bytes_per_particle = number(cost.at("field_and_list_bytes_per_particle"));
   for (const Json& reference : summary.at("references"))

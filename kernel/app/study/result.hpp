@@ -33,6 +33,8 @@ struct StudyResult {
   double bytes_per_particle = 0.0;
   double wall_seconds = 0.0;  ///< of all sessions of the run
   double particle_steps_per_second = 0.0;
+  double pairs_per_second =
+      0.0;  ///< of the sum over pairs that took longest, on all threads; NaN without one
   std::vector<StudyError> errors;  ///< one for each reference of the case
 
   bool finished() const { return status == "finished"; }
