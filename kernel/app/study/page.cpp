@@ -199,7 +199,9 @@ class MeansTable {
     const auto at = std::find(table_[0].begin(), table_[0].end(), column) - table_[0].begin();
     const std::string& cell = table_[row].at(static_cast<std::size_t>(at));
     const std::optional<double> value = number(cell);
-    return value && column != "runs" ? percent_text(*value) : cell;
+    const bool is_share =
+        column == "error of the mean" || column == "tolerance" || column == "deviation of a run";
+    return value && is_share ? percent_text(*value) : cell;
   }
   /// The mean that misses its reference most, or meets it with least to spare; nothing if one has no error.
   std::optional<std::size_t> hardest() const {
@@ -225,11 +227,8 @@ Rows means(const CaseReport& report) {
   if (table.rows() == 0) return {};
   Rows rows{report.means[0]};
   for (std::size_t row = 1; row <= table.rows(); ++row) {
-    auto& out = rows.emplace_back(report.means[row]);
-    for (std::size_t c = 0; c < out.size(); ++c)
-      if (const std::string& name = rows[0][c];
-          name == "error of the mean" || name == "tolerance" || name == "deviation of a run")
-        out[c] = table.text(row, name);
+    auto& out = rows.emplace_back();
+    for (const std::string& column : report.means[0]) out.push_back(table.text(row, column));
   }
   return rows;
 }

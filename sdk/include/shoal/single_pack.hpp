@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // SinglePack: twice as many numbers as a Pack, in single precision. Code that is generic over a real type runs with it
-// too: numbers in double precision that meet one are rounded to single, and sums over its lanes are in double.
+// too: numbers in double precision that meet one are rounded to single. Sums over its lanes are double.
 #pragma once
 
 #include <cmath>

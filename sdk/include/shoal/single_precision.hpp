@@ -7,7 +7,7 @@
 //     std::shared_ptr<SinglePrecision> single;
 //     auto neighbour_fields() const { return std::tie(pressure, acceleration); }
 //
-// and no other change: fields stay in double precision, and so do `particle` and the sum over the lanes. What `pair`
+// and no other change: fields and `particle` stay in double precision, and of sums over lanes all but four. What `pair`
 // returns has an error of some 1e-7 of its largest terms, whatever the size of the domain and of the particles; what
 // pairs exchange stays opposite to the last bit. `neighbour_fields` lists what `pair` reads of neighbours besides their
 // positions and volumes: each pass rounds it once to records that are read at a fraction of the cost of fields. What
